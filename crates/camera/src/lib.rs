@@ -1,0 +1,1 @@
+//! Pinhole cameras with lens distortion, and rigs of calibrated cameras

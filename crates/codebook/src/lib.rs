@@ -1,0 +1,1 @@
+//! K-means with the chi-squared statistic, and soft voting into its centres

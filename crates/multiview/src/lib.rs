@@ -1,0 +1,1 @@
+//! Joins the silhouette descriptors of several cameras

@@ -1,0 +1,1 @@
+//! Joint angles of a bare hand from one or more calibrated cameras

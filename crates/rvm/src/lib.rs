@@ -1,0 +1,1 @@
+//! Sparse Bayesian and kernel regression for vector-valued targets

@@ -1,0 +1,1 @@
+//! From a photograph of a bare hand to its silhouette and ordered contour

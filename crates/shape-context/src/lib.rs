@@ -1,0 +1,1 @@
+//! Log-polar shape contexts of planar contours, in five orientations

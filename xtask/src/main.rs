@@ -1,0 +1,2 @@
+//! The experiments and chores of phalanx.
+fn main() {}
