@@ -1,5 +1,17 @@
-//! A parametric human hand: 28-d pose, shape, kinematics and joint limits
+#![doc = include_str!("../README.md")]
 
+mod csv_file;
+mod dof;
+mod error;
+mod kinematics;
+mod pose;
 mod primitive;
+mod shape;
 
+pub use csv_file::{PoseTable, write_poses};
+pub use dof::{Digit, Dof, Unit};
+pub use error::{Error, Result};
+pub use kinematics::{JOINTS, PosedHand};
+pub use pose::{Pose, abduction_limit};
 pub use primitive::{Ball, Primitive};
+pub use shape::{FingerShape, ForearmShape, HandShape, PalmShape, Side, ThumbShape};

@@ -1,0 +1,109 @@
+//! Files of poses: CSV with the names of [`Dof`] as columns, degrees and millimetres.
+
+use std::io::{Read, Write};
+
+use crate::{Dof, Error, Pose, Result};
+
+/// The name of the column that tells which frame a row belongs to.
+const FRAME: &str = "frame";
+
+/// The poses of a file, with what a reader should be told about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PoseTable {
+    /// The poses, a row each.
+    pub poses: Vec<Pose>,
+    /// The `frame` column, if the file has one, a row each.
+    pub frames: Option<Vec<String>>,
+    /// What is odd but legal: columns that were passed over, values outside plausible ranges.
+    pub warnings: Vec<String>,
+}
+
+impl PoseTable {
+    /// Reads poses. Columns are found by name, absent ones are 0; a column with a dot in its
+    /// name must be one of the 28, another is passed over with a warning.
+    ///
+    /// # Errors
+    /// Malformed CSV, an unknown or repeated column, a cell that is no finite number, no row.
+    pub fn read(reader: impl Read) -> Result<Self> {
+        let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(reader);
+        let mut warnings = Vec::new();
+        let columns = columns(csv.headers()?, &mut warnings)?;
+        let frame_column = csv.headers()?.iter().position(|name| name == FRAME);
+
+        let (mut poses, mut frames) = (Vec::new(), Vec::new());
+        for (row, record) in csv.records().enumerate() {
+            let record = record?;
+            let mut pose = Pose::REST;
+            for &(column, dof) in &columns {
+                pose[dof] = dof.unit().from_file(number(&record[column], row + 1, dof)?);
+            }
+            frames.extend(frame_column.map(|column| record[column].to_owned()));
+            poses.push(pose);
+        }
+        if poses.is_empty() {
+            return Err(Error::NoPoses { what: "row" });
+        }
+        warnings.extend(range_warning(&poses));
+        Ok(Self { poses, frames: frame_column.map(|_| frames), warnings })
+    }
+}
+
+/// Which column holds which number.
+fn columns(header: &csv::StringRecord, warnings: &mut Vec<String>) -> Result<Vec<(usize, Dof)>> {
+    let mut columns: Vec<(usize, Dof)> = Vec::new();
+    for (column, name) in header.iter().enumerate() {
+        match name.parse::<Dof>() {
+            Ok(dof) if columns.iter().any(|&(_, known)| known == dof) => {
+                return Err(Error::RepeatedColumn { column: name.to_owned() });
+            }
+            Ok(dof) => columns.push((column, dof)),
+            Err(error) if name.contains('.') => return Err(error),
+            Err(_) if name == FRAME => {}
+            Err(_) => warnings.push(format!("column '{name}' is passed over")),
+        }
+    }
+    if columns.is_empty() {
+        return Err(Error::NoPoses { what: "column of a pose" });
+    }
+    Ok(columns)
+}
+
+fn number(text: &str, row: usize, dof: Dof) -> Result<f64> {
+    let finite = text.parse().ok().filter(|value: &f64| value.is_finite());
+    finite.ok_or_else(|| Error::BadCell {
+        row,
+        column: dof.name().to_owned(),
+        value: text.to_owned(),
+    })
+}
+
+fn range_warning(poses: &[Pose]) -> Option<String> {
+    let mut outside = [0_usize; Dof::COUNT];
+    for dof in poses.iter().flat_map(Pose::out_of_range) {
+        outside[dof.index()] += 1;
+    }
+    let named: Vec<String> = Dof::ALL
+        .into_iter()
+        .filter(|dof| outside[dof.index()] > 0)
+        .map(|dof| format!("{dof} ({})", outside[dof.index()]))
+        .collect();
+    (!named.is_empty()).then(|| {
+        format!("outside the plausible range (rows): {}; kept as they are", named.join(", "))
+    })
+}
+
+/// Writes poses as CSV, with a `frame` column counting from 0, the columns `dofs`, and four
+/// decimals.
+///
+/// # Errors
+/// What the writer reports.
+pub fn write_poses(writer: impl Write, poses: &[Pose], dofs: &[Dof]) -> Result<()> {
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record(std::iter::once(FRAME).chain(dofs.iter().map(|dof| dof.name())))?;
+    for (frame, pose) in poses.iter().enumerate() {
+        let cells = dofs.iter().map(|&dof| format!("{:.4}", dof.unit().to_file(pose[dof])));
+        csv.write_record(std::iter::once(frame.to_string()).chain(cells))?;
+    }
+    csv.flush().map_err(csv::Error::from)?;
+    Ok(())
+}

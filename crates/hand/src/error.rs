@@ -1,0 +1,58 @@
+//! What can be wrong with a pose, a shape or their files.
+
+/// An error of this crate.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A name that is none of the 28 numbers of a pose.
+    #[error(
+        "'{name}' names no degree of freedom (the names are like 'index.pip' or 'global.theta_z')"
+    )]
+    UnknownDof {
+        /// The name that was met.
+        name: String,
+    },
+    /// A file of poses that is not well-formed CSV.
+    #[error("poses: {0}")]
+    Csv(#[from] csv::Error),
+    /// A cell of a file of poses that is not a finite number.
+    #[error("poses: row {row}, column '{column}': '{value}' is not a finite number")]
+    BadCell {
+        /// Row after the header, from 1.
+        row: usize,
+        /// The column's name.
+        column: String,
+        /// The text of the cell.
+        value: String,
+    },
+    /// A file of poses in which the same column stands twice.
+    #[error("poses: column '{column}' stands twice")]
+    RepeatedColumn {
+        /// The column's name.
+        column: String,
+    },
+    /// A file of poses with no column of a pose, or with no row.
+    #[error("poses: the file holds no {what}")]
+    NoPoses {
+        /// What is absent.
+        what: &'static str,
+    },
+    /// A hand file that is not well-formed TOML or lacks a field.
+    #[error("hand: {0}")]
+    Toml(#[from] toml::de::Error),
+    /// A number of a hand shape outside what a hand can have.
+    #[error("hand: {field} = {value} is outside {low}..{high}")]
+    BadShape {
+        /// The field, as in the file.
+        field: String,
+        /// Its value.
+        value: f64,
+        /// Lowest value allowed.
+        low: f64,
+        /// Highest value allowed.
+        high: f64,
+    },
+}
+
+/// A result of this crate.
+pub type Result<T> = std::result::Result<T, Error>;

@@ -1,0 +1,198 @@
+//! Forward kinematics: from shape and pose to 21 joints and to the solids that draw the hand.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use crate::{Ball, Digit, Dof, FingerShape, HandShape, Pose, Primitive, Side, ThumbShape};
+
+/// How many joints a posed hand reports.
+pub const JOINTS: usize = 21;
+
+/// A hand in a pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PosedHand {
+    /// Joint centres, mm: 0 the wrist, then base to tip of thumb (1–4), index (5–8), middle
+    /// (9–12), ring (13–16) and little finger (17–20); tips on the skin.
+    pub joints: [DVec3; JOINTS],
+    /// The solids whose union is the hand and forearm, mm.
+    pub primitives: Vec<Primitive>,
+}
+
+/// A digit's four joints and the directions of its three segments.
+struct Chain {
+    joints: [DVec3; 4],
+    directions: [DVec3; 3],
+}
+
+impl HandShape {
+    /// Poses the hand: joints and solids in world coordinates, where `rest` maps the frame of
+    /// the hand at rest (wrist in the middle of the volume) to the world.
+    ///
+    /// A left hand is the mirror image in its own frame: its joint angles mean the same, its
+    /// orientation is mirrored with it (θ_Z = 90° has the thumb up too), its position is not.
+    pub fn pose(&self, pose: &Pose, rest: &DAffine3) -> PosedHand {
+        let palm = DMat3::from_rotation_y(pose[Dof::WristDeviation])
+            * DMat3::from_rotation_x(pose[Dof::WristFlexion]);
+        let chains = self.chains(pose).map(|chain| chain.turned(palm));
+
+        let mut joints = [DVec3::ZERO; JOINTS];
+        for (digit, chain) in chains.iter().enumerate() {
+            joints[1 + 4 * digit..5 + 4 * digit].copy_from_slice(&chain.joints);
+        }
+        let primitives = self.solids(&chains, palm);
+
+        let motion = *rest * self.global_motion(pose);
+        PosedHand {
+            joints: joints.map(|joint| motion.transform_point3(joint)),
+            primitives: primitives.iter().map(|solid| solid.moved(&motion)).collect(),
+        }
+    }
+
+    /// From the right hand's own frame to the frame of the hand at rest.
+    fn global_motion(&self, pose: &Pose) -> DAffine3 {
+        let mirror = match self.side {
+            Side::Right => DMat3::IDENTITY,
+            Side::Left => DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0)),
+        };
+        DAffine3::from_mat3_translation(mirror * pose.rotation(), pose.translation())
+    }
+
+    /// The five digits, thumb first, in the palm's frame.
+    fn chains(&self, pose: &Pose) -> [Chain; 5] {
+        let fingers = self.fingers();
+        std::array::from_fn(|k| match k {
+            0 => self.thumb.chain(pose),
+            _ => fingers[k - 1].chain(Digit::FINGERS[k - 1], pose),
+        })
+    }
+
+    /// Every solid, in the frame of the forearm; `palm` is the wrist's rotation.
+    fn solids(&self, chains: &[Chain; 5], palm: DMat3) -> Vec<Primitive> {
+        let mut solids = Vec::with_capacity(32);
+        solids.push(self.forearm_solid());
+        self.push_palm(&mut solids, chains, palm);
+        self.push_thumb_ball(&mut solids, chains, palm);
+        solids.extend(chains[0].solids(&self.thumb.radii_mm));
+        for (finger, chain) in self.fingers().into_iter().zip(&chains[1..]) {
+            solids.extend(chain.solids(&finger.radii_mm));
+        }
+        solids
+    }
+
+    fn forearm_solid(&self) -> Primitive {
+        let forearm = &self.forearm;
+        let [wrist, far] = forearm.half_widths_mm;
+        // The round cap of the wrist's end stays behind the wrist.
+        let ends = [
+            Ball::new(DVec3::new(0.0, 0.0, -0.5 * wrist), wrist),
+            Ball::new(DVec3::new(0.0, 0.0, -forearm.length_mm), far),
+        ];
+        Primitive::GeneralisedCylinder { ends, thin_axis: DVec3::Y, flatness: forearm.flatness }
+    }
+
+    /// The slab between the wrist and the knuckles, the heel of the hand, and the webs between
+    /// the fingers.
+    fn push_palm(&self, solids: &mut Vec<Primitive>, chains: &[Chain; 5], palm: DMat3) {
+        let shape = &self.palm;
+        let [thumb_side, little_side] = self.wrist_balls(palm);
+        let knuckles: [Ball; 4] =
+            std::array::from_fn(|k| Ball::new(chains[k + 1].joints[0], shape.knuckle_radii_mm[k]));
+        let [index, middle, ring, little] = knuckles;
+        let heel = Ball::new(palm * shape.heel_mm, shape.heel_radius_mm);
+        solids.extend([
+            Primitive::Wedge([thumb_side, index, middle]),
+            Primitive::Wedge([thumb_side, little_side, middle]),
+            Primitive::Wedge([little_side, middle, ring]),
+            Primitive::Wedge([little_side, heel, ring]),
+            Primitive::Wedge([heel, ring, little]),
+        ]);
+        let fingers = self.fingers();
+        for pair in 0..3 {
+            let web = |k: usize| {
+                let chain = &chains[k + 1];
+                let along = shape.web_reach * fingers[k].lengths_mm[0];
+                Ball::new(chain.joints[0] + chain.directions[0] * along, shape.web_radius_mm)
+            };
+            let (near, next) = (web(pair), web(pair + 1));
+            solids.push(Primitive::Wedge([knuckles[pair], near, next]));
+            solids.push(Primitive::Wedge([knuckles[pair], knuckles[pair + 1], next]));
+        }
+    }
+
+    /// The ball of the thumb and the web between thumb and index finger.
+    fn push_thumb_ball(&self, solids: &mut Vec<Primitive>, chains: &[Chain; 5], palm: DMat3) {
+        let shape = &self.palm;
+        let [thumb_side, _] = self.wrist_balls(palm);
+        let [base, mcp, ..] = chains[0].joints;
+        let index_knuckle = chains[1].joints[0];
+        let [base_radius, mcp_radius, ..] = self.thumb.radii_mm;
+        let thin = |at: DVec3| Ball::new(at, shape.thumb_web_radius_mm);
+        let base = Ball::new(base, base_radius);
+        solids.extend([
+            Primitive::Wedge([thumb_side, base, Ball::new(mcp, mcp_radius)]),
+            Primitive::Wedge([
+                base,
+                thin(base.center.lerp(mcp, 0.85)),
+                thin(thumb_side.center.lerp(index_knuckle, 0.8)),
+            ]),
+        ]);
+    }
+
+    /// The wrist's thumb side and little finger's side.
+    fn wrist_balls(&self, palm: DMat3) -> [Ball; 2] {
+        let shape = &self.palm;
+        [1.0, -1.0].map(|side| {
+            let center = palm * DVec3::new(side * shape.wrist_half_width_mm, 0.0, 4.0);
+            Ball::new(center, shape.wrist_radius_mm)
+        })
+    }
+}
+
+impl ThumbShape {
+    fn chain(&self, pose: &Pose) -> Chain {
+        let rest = DMat3::from_rotation_y(self.splay_deg.to_radians())
+            * DMat3::from_rotation_x(self.drop_deg.to_radians())
+            * DMat3::from_rotation_z(-self.roll_deg.to_radians());
+        let [abduction, flexions @ ..] = Digit::Thumb.dofs().map(|dof| pose[dof]);
+        let frame = rest * DMat3::from_rotation_y(abduction);
+        Chain::bent(self.base_mm, frame, flexions, self.lengths_mm)
+    }
+}
+
+impl FingerShape {
+    fn chain(&self, finger: Digit, pose: &Pose) -> Chain {
+        let [abduction, flexions @ ..] = finger.dofs().map(|dof| pose[dof]);
+        // Away from the middle finger is towards -X for the ring and the little finger.
+        let outwards = if matches!(finger, Digit::Ring | Digit::Little) { -1.0 } else { 1.0 };
+        let frame = DMat3::from_rotation_y(self.splay_deg.to_radians() + outwards * abduction);
+        Chain::bent(self.base_mm, frame, flexions, self.lengths_mm)
+    }
+}
+
+impl Chain {
+    /// A planar chain from `base`: +Z of `frame` is its direction, +X its flexion axis.
+    fn bent(base: DVec3, frame: DMat3, flexions: [f64; 3], lengths: [f64; 3]) -> Self {
+        let mut joints = [base; 4];
+        let mut directions = [DVec3::Z; 3];
+        let mut flexion = 0.0;
+        for segment in 0..3 {
+            flexion += flexions[segment];
+            directions[segment] = frame * DMat3::from_rotation_x(flexion).z_axis;
+            joints[segment + 1] = joints[segment] + directions[segment] * lengths[segment];
+        }
+        Self { joints, directions }
+    }
+
+    fn turned(self, rotation: DMat3) -> Self {
+        Self {
+            joints: self.joints.map(|joint| rotation * joint),
+            directions: self.directions.map(|direction| rotation * direction),
+        }
+    }
+
+    /// The three segments; the last ball ends at the skin.
+    fn solids(&self, radii: &[f64; 4]) -> [Primitive; 3] {
+        let mut balls: [Ball; 4] = std::array::from_fn(|k| Ball::new(self.joints[k], radii[k]));
+        balls[3].center -= self.directions[2] * radii[3];
+        std::array::from_fn(|k| Primitive::RoundCone([balls[k], balls[k + 1]]))
+    }
+}

@@ -1,0 +1,59 @@
+//! Hand files and pose files.
+
+use phalanx_hand::{Dof, Error, HandShape, Pose, PoseTable, write_poses};
+
+fn read(text: &str) -> Result<PoseTable, Error> {
+    PoseTable::read(text.as_bytes())
+}
+
+#[test]
+fn shape_survives_its_file() {
+    let shape = HandShape::adult();
+    assert_eq!(HandShape::from_toml(&shape.to_toml()).unwrap(), shape);
+}
+
+#[test]
+fn impossible_shapes_are_refused_by_name() {
+    let mut shape = HandShape::adult();
+    shape.ring.lengths_mm[1] = f64::NAN;
+    let error = HandShape::from_toml(&shape.to_toml()).unwrap_err();
+    assert!(error.to_string().contains("ring.lengths_mm[1]"), "{error}");
+    assert!(HandShape::from_toml("side = \"right\"").is_err());
+}
+
+#[test]
+fn poses_survive_their_file_and_absent_columns_are_zero() {
+    let mut pose = Pose::REST;
+    pose[Dof::IndexPip] = 60_f64.to_radians();
+    pose[Dof::TZ] = -12.5;
+    let mut bytes = Vec::new();
+    write_poses(&mut bytes, &[pose, Pose::REST], &[Dof::IndexPip, Dof::TZ]).unwrap();
+    let table = PoseTable::read(bytes.as_slice()).unwrap();
+    assert_eq!(table.frames, Some(vec!["0".to_owned(), "1".to_owned()]));
+    assert_eq!(table.warnings, Vec::<String>::new());
+    for (read, written) in table.poses.iter().zip([pose, Pose::REST]) {
+        for dof in Dof::ALL {
+            assert!((read[dof] - written[dof]).abs() < 1e-9, "{dof}");
+        }
+    }
+}
+
+#[test]
+fn bad_pose_files_are_refused_by_name() {
+    assert!(matches!(read("index.pip,index.pipe\n1,2\n"), Err(Error::UnknownDof { .. })));
+    assert!(matches!(read("index.pip,index.pip\n1,2\n"), Err(Error::RepeatedColumn { .. })));
+    assert!(matches!(read("frame,time\n1,2\n"), Err(Error::NoPoses { .. })));
+    assert!(matches!(read("index.pip\n"), Err(Error::NoPoses { .. })));
+    assert!(matches!(read("index.pip\nNaN\n"), Err(Error::BadCell { row: 1, .. })));
+    assert!(matches!(read("index.pip,index.dip\n1\n"), Err(Error::Csv(_))));
+}
+
+#[test]
+fn odd_values_are_kept_with_a_warning() {
+    let table = read("index.pip,index.mcp,index.abduction,note\n150,90,15,7\n").unwrap();
+    assert!((table.poses[0][Dof::IndexPip].to_degrees() - 150.0).abs() < 1e-9);
+    let warnings = table.warnings.join("; ");
+    assert!(warnings.contains("index.pip (1)"), "{warnings}");
+    assert!(warnings.contains("index.abduction (1)"), "a bent knuckle spreads less: {warnings}");
+    assert!(warnings.contains("note"), "{warnings}");
+}
