@@ -1,0 +1,153 @@
+//! What happens inside a camera: from directions to pixels and back.
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use crate::{Distortion, Error, Result};
+
+/// A pinhole camera's inside, in pixels, with pixel centres at integer + 0.5: the image spans
+/// 0 to `width` and 0 to `height`, x to the right and y down.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Intrinsics {
+    /// Image width, px.
+    pub width: u32,
+    /// Image height, px.
+    pub height: u32,
+    /// Focal length along x, px.
+    pub fx: f64,
+    /// Focal length along y, px.
+    pub fy: f64,
+    /// Principal point's x, px.
+    pub cx: f64,
+    /// Principal point's y, px.
+    pub cy: f64,
+    /// The lens.
+    pub distortion: Distortion,
+}
+
+impl Intrinsics {
+    /// The longest image side that is believed, px.
+    pub const MAX_SIDE: u32 = 16_384;
+
+    /// The longest focal length that is believed, px.
+    pub const MAX_FOCAL: f64 = 1e6;
+
+    /// A perfect lens with square pixels and its principal point in the middle of the image.
+    pub fn pinhole(width: u32, height: u32, focal: f64) -> Self {
+        Self {
+            width,
+            height,
+            fx: focal,
+            fy: focal,
+            cx: f64::from(width) / 2.0,
+            cy: f64::from(height) / 2.0,
+            distortion: Distortion::NONE,
+        }
+    }
+
+    /// The pixel of a direction (x/z, y/z) in the camera's frame; `None` where the lens has
+    /// folded over. It may lie outside the image.
+    pub fn to_pixel(&self, normalised: DVec2) -> Option<DVec2> {
+        if self.distortion.is_none() {
+            return normalised.is_finite().then(|| self.scaled(normalised));
+        }
+        (normalised.is_finite() && self.distortion.is_one_to_one_at(normalised))
+            .then(|| self.scaled(self.distortion.distort(normalised)))
+    }
+
+    /// The direction (x/z, y/z) in the camera's frame that a pixel looks in; `None` where the
+    /// lens maps none to it.
+    pub fn to_normalised(&self, pixel: DVec2) -> Option<DVec2> {
+        self.distortion.undistort(self.unscaled(pixel))
+    }
+
+    /// From a pixel of [`undistorted`](Self::undistorted) to this camera's pixel.
+    pub fn distort(&self, pixel: DVec2) -> Option<DVec2> {
+        self.to_pixel(self.unscaled(pixel))
+    }
+
+    /// From this camera's pixel to that of [`undistorted`](Self::undistorted).
+    pub fn undistort(&self, pixel: DVec2) -> Option<DVec2> {
+        Some(self.scaled(self.to_normalised(pixel)?))
+    }
+
+    /// The same camera with a perfect lens.
+    #[must_use]
+    pub fn undistorted(&self) -> Self {
+        Self { distortion: Distortion::NONE, ..*self }
+    }
+
+    /// The camera of a window of the image: `width`×`height` pixels from column `x`, row `y`.
+    pub fn cropped(&self, x: u32, y: u32, width: u32, height: u32) -> Result<Self> {
+        let fits = |start: u32, length: u32, whole: u32| {
+            length > 0 && start.checked_add(length).is_some_and(|end| end <= whole)
+        };
+        if !fits(x, width, self.width) || !fits(y, height, self.height) {
+            let image = [self.width, self.height];
+            return Err(Error::Window { x, y, width, height, image });
+        }
+        let (cx, cy) = (self.cx - f64::from(x), self.cy - f64::from(y));
+        Ok(Self { width, height, cx, cy, ..*self })
+    }
+
+    /// The camera of the image scaled to `width`×`height` pixels.
+    #[must_use]
+    pub fn resized(&self, width: u32, height: u32) -> Self {
+        let sx = f64::from(width) / f64::from(self.width);
+        let sy = f64::from(height) / f64::from(self.height);
+        Self {
+            width,
+            height,
+            fx: self.fx * sx,
+            fy: self.fy * sy,
+            cx: self.cx * sx,
+            cy: self.cy * sy,
+            ..*self
+        }
+    }
+
+    /// Whether a pixel position lies within the image.
+    pub fn contains(&self, pixel: DVec2) -> bool {
+        (0.0..=f64::from(self.width)).contains(&pixel.x)
+            && (0.0..=f64::from(self.height)).contains(&pixel.y)
+    }
+
+    /// Checks every field on behalf of the camera of this name.
+    pub(crate) fn validate(&self, camera: &str) -> Result<()> {
+        let camera = || camera.to_owned();
+        let Self { width, height, fx, fy, .. } = *self;
+        let Distortion { k1, k2, p1, p2, k3 } = self.distortion;
+        if ![k1, k2, p1, p2, k3].iter().all(|k| k.is_finite()) {
+            return Err(Error::NotFinite { camera: camera(), field: "distortion" });
+        }
+        if ![width, height].iter().all(|side| (1..=Self::MAX_SIDE).contains(side)) {
+            return Err(Error::ImageSize { camera: camera(), width, height });
+        }
+        if ![fx, fy].iter().all(|&f| f > 0.0 && f <= Self::MAX_FOCAL) {
+            return Err(Error::FocalLength { camera: camera(), fx, fy });
+        }
+        let point = DVec2::new(self.cx, self.cy);
+        if !self.contains(point) {
+            return Err(Error::PrincipalPoint { camera: camera(), point });
+        }
+        let (w, h) = (f64::from(width), f64::from(height));
+        match [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)]
+            .map(DVec2::from)
+            .into_iter()
+            .find(|&corner| self.to_normalised(corner).is_none())
+        {
+            Some(corner) => Err(Error::Folding { camera: camera(), corner }),
+            None => Ok(()),
+        }
+    }
+
+    /// From the normalised plane to pixels, leaving out the lens.
+    fn scaled(&self, normalised: DVec2) -> DVec2 {
+        normalised * DVec2::new(self.fx, self.fy) + DVec2::new(self.cx, self.cy)
+    }
+
+    /// From pixels to the normalised plane, leaving out the lens.
+    fn unscaled(&self, pixel: DVec2) -> DVec2 {
+        (pixel - DVec2::new(self.cx, self.cy)) / DVec2::new(self.fx, self.fy)
+    }
+}

@@ -1,0 +1,73 @@
+//! Cameras that look at one hand.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Camera, Error, Result, Volume};
+
+/// Any number of calibrated cameras and the volume in which the hand works.
+///
+/// Rigs are read from and written to TOML with [`from_toml`](Self::from_toml) and
+/// [`to_toml`](Self::to_toml). A rig that came another way is checked with
+/// [`validate`](Self::validate).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Rig {
+    /// The cameras, in an order that every consumer keeps.
+    pub cameras: Vec<Camera>,
+    /// Where the hand works.
+    pub volume: Volume,
+}
+
+impl Rig {
+    /// The camera of this name.
+    pub fn camera(&self, name: &str) -> Result<&Camera> {
+        self.cameras.iter().find(|camera| camera.name == name).ok_or_else(|| Error::UnknownCamera {
+            name: name.to_owned(),
+            names: self.cameras.iter().map(|camera| camera.name.clone()).collect(),
+        })
+    }
+
+    /// The rig of some of the cameras, in the order asked for.
+    pub fn select(&self, names: &[impl AsRef<str>]) -> Result<Self> {
+        let cameras = names.iter().map(|name| self.camera(name.as_ref()).cloned());
+        let rig = Self { cameras: cameras.collect::<Result<_>>()?, volume: self.volume };
+        rig.validate_names()?;
+        Ok(rig)
+    }
+
+    /// Checks each camera and the volume, that names are unique, and that every camera sees
+    /// the middle of the volume.
+    pub fn validate(&self) -> Result<()> {
+        self.validate_names()?;
+        self.volume.validate()?;
+        for camera in &self.cameras {
+            camera.validate()?;
+            self.validate_view(camera)?;
+        }
+        Ok(())
+    }
+
+    fn validate_names(&self) -> Result<()> {
+        if self.cameras.is_empty() {
+            return Err(Error::NoCamera);
+        }
+        for (index, camera) in self.cameras.iter().enumerate() {
+            if self.cameras[..index].iter().any(|earlier| earlier.name == camera.name) {
+                return Err(Error::DuplicateName { camera: camera.name.clone() });
+            }
+        }
+        Ok(())
+    }
+
+    fn validate_view(&self, camera: &Camera) -> Result<()> {
+        let name = || camera.name.clone();
+        // Written so that an overflow to NaN counts as behind.
+        let in_front = camera.extrinsics.to_camera(self.volume.center).z > 0.0;
+        if !in_front {
+            return Err(Error::VolumeBehind { camera: name() });
+        }
+        match camera.project(self.volume.center) {
+            Some(pixel) if camera.intrinsics.contains(pixel) => Ok(()),
+            _ => Err(Error::VolumeOutside { camera: name() }),
+        }
+    }
+}

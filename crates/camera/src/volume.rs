@@ -1,0 +1,50 @@
+//! Where the hand works.
+
+use glam::{DAffine3, DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+
+use crate::{Error, Result};
+
+/// Where the hand works in the world.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Volume {
+    /// Where the wrist is at rest, mm.
+    pub center: DVec3,
+    /// Extent of the box in which the wrist moves, along the X, Y and Z of
+    /// [`rest_frame`](Self::rest_frame), mm.
+    pub size: DVec3,
+    /// Direction from the elbow to the wrist at rest; of any length.
+    pub forearm: DVec3,
+    /// Direction out of the back of the hand at rest (palm down); of any length.
+    pub up: DVec3,
+}
+
+impl Volume {
+    /// The hand frame at rest, to the world: origin at the middle, Z along the forearm, Y up
+    /// (made orthogonal to Z) and X = Y × Z. Of a volume that [`validate`](Self::validate)
+    /// passes; any other still gets some finite frame.
+    pub fn rest_frame(&self) -> DAffine3 {
+        let z = self.forearm.normalize_or(DVec3::Z);
+        let x = self.up.normalize_or(DVec3::Y).cross(z);
+        let x = x.normalize_or(z.any_orthonormal_vector());
+        DAffine3::from_mat3_translation(DMat3::from_cols(x, z.cross(x), z), self.center)
+    }
+
+    /// Checks that all is finite, the sizes positive, and the directions non-zero and not
+    /// parallel.
+    pub fn validate(&self) -> Result<()> {
+        let unit = |v: DVec3| v.try_normalize().filter(|_| v.is_finite());
+        if !self.center.is_finite() {
+            return Err(Error::VolumeField { field: "center_mm" });
+        }
+        if !self.size.is_finite() || self.size.min_element() <= 0.0 {
+            return Err(Error::VolumeField { field: "size_mm" });
+        }
+        let forearm = unit(self.forearm).ok_or(Error::VolumeField { field: "forearm" })?;
+        let up = unit(self.up).ok_or(Error::VolumeField { field: "up" })?;
+        if up.cross(forearm).length() < 1e-6 {
+            return Err(Error::VolumeUpAlongForearm);
+        }
+        Ok(())
+    }
+}

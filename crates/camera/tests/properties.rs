@@ -1,0 +1,199 @@
+//! Projection and its inverse, moved, cropped, resized and written to TOML.
+
+use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, EulerRot};
+use phalanx_camera::{Camera, Distortion, Extrinsics, Intrinsics, Rig, Volume};
+use proptest::prelude::*;
+
+prop_compose! {
+    fn distortions()(
+        k1 in -0.3..0.3, k2 in -0.1..0.1, k3 in -0.02..0.02, p1 in -5e-3..5e-3, p2 in -5e-3..5e-3,
+    ) -> Distortion {
+        Distortion { k1, k2, p1, p2, k3 }
+    }
+}
+
+prop_compose! {
+    fn intrinsics()(
+        width in 40u32..800, height in 40u32..600, zoom in 0.8..2.0, aspect in 0.9..1.1,
+        (u, v) in (0.4..0.6, 0.4..0.6),
+        distortion in prop_oneof![Just(Distortion::NONE), distortions()],
+    ) -> Intrinsics {
+        let fx = zoom * f64::from(width.max(height));
+        let (cx, cy) = (u * f64::from(width), v * f64::from(height));
+        Intrinsics { width, height, fx, fy: fx * aspect, cx, cy, distortion }
+    }
+}
+
+prop_compose! {
+    fn rotations()(a in -3.1..3.1, b in -1.5..1.5, c in -3.1..3.1) -> DQuat {
+        DQuat::from_euler(EulerRot::XYZ, a, b, c)
+    }
+}
+
+prop_compose! {
+    fn vectors(reach: f64)(x in -reach..reach, y in -reach..reach, z in -reach..reach) -> DVec3 {
+        DVec3::new(x, y, z)
+    }
+}
+
+prop_compose! {
+    fn cameras()(intrinsics in intrinsics(), q in rotations(), t in vectors(500.0)) -> Camera {
+        let extrinsics = Extrinsics { rotation: DMat3::from_quat(q), translation: t };
+        Camera { name: "c".into(), intrinsics, extrinsics }
+    }
+}
+
+/// A pixel anywhere in the picture from two numbers in 0..1.
+fn pixel_of(camera: &Camera, u: f64, v: f64) -> DVec2 {
+    DVec2::new(f64::from(camera.intrinsics.width) * u, f64::from(camera.intrinsics.height) * v)
+}
+
+/// The radial part's smallest slope from the middle of the picture to `radius`, by brute force.
+fn least_slope(d: &Distortion, radius: f64) -> f64 {
+    let f = |r: f64| r * (1.0 + d.k1 * r.powi(2) + d.k2 * r.powi(4) + d.k3 * r.powi(6));
+    let slopes = (0..20_000).map(|i| f64::from(i) * radius / 20_000.0).map(|r| {
+        let step = radius * 1e-6;
+        (f(r + step) - f(r)) / step
+    });
+    slopes.fold(f64::INFINITY, f64::min)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn unproject_inverts_project(camera in cameras(), u in 0.0..1.0, v in 0.0..1.0,
+                                 far in 50.0..2000.0) {
+        prop_assume!(camera.validate().is_ok());
+        let pixel = pixel_of(&camera, u, v);
+        let ray = camera.unproject(pixel).unwrap();
+        prop_assert!((ray.direction.length() - 1.0).abs() < 1e-12);
+        prop_assert!((ray.origin - camera.centre()).length() == 0.0);
+        let seen = camera.project(ray.origin + ray.direction * far).unwrap();
+        prop_assert!((seen - pixel).length() < 1e-6, "{pixel} became {seen}");
+        prop_assert_eq!(camera.project(ray.origin - ray.direction * far), None);
+    }
+
+    #[test]
+    fn undistort_inverts_distort(camera in cameras(), u in 0.0..1.0, v in 0.0..1.0) {
+        prop_assume!(camera.validate().is_ok());
+        let pixel = pixel_of(&camera, u, v);
+        let ideal = camera.intrinsics.undistort(pixel).unwrap();
+        prop_assert!((camera.intrinsics.distort(ideal).unwrap() - pixel).length() < 1e-8);
+        let straight = camera.intrinsics.undistorted().to_normalised(ideal);
+        let seen = camera.intrinsics.to_normalised(pixel).unwrap();
+        prop_assert!((straight.unwrap() - seen).length() < 1e-12);
+    }
+
+    #[test]
+    fn the_fold_is_where_the_radius_stops_growing(
+        d in distortions(), x in -3.0..3.0, y in -3.0..3.0,
+    ) {
+        let point = DVec2::new(x, y);
+        let slope = least_slope(&d, point.length());
+        prop_assume!(slope.abs() > 1e-3);
+        prop_assert_eq!(d.is_one_to_one_at(point), slope > 0.0);
+    }
+
+    #[test]
+    fn undistort_finds_whatever_distort_made(d in distortions(), x in -1.5..1.5, y in -1.5..1.5) {
+        let point = DVec2::new(x, y);
+        // Leave out the surroundings of the fold, where the inverse is ill-conditioned.
+        prop_assume!(least_slope(&d, point.length()) > 0.2);
+        let back = d.undistort(d.distort(point));
+        prop_assert!(back.is_some_and(|b| (b - point).length() < 1e-9), "{back:?} is not {point}");
+    }
+
+    #[test]
+    fn moving_world_and_camera_together_changes_nothing(
+        camera in cameras(), q in rotations(), t in vectors(900.0), point in vectors(900.0),
+    ) {
+        let motion = DAffine3::from_rotation_translation(q, t);
+        let inverse = motion.inverse();
+        let moved = Camera {
+            extrinsics: Extrinsics {
+                rotation: camera.extrinsics.rotation * inverse.matrix3,
+                translation: camera.extrinsics.to_camera(inverse.translation),
+            },
+            ..camera.clone()
+        };
+        match (camera.project(point), moved.project(motion.transform_point3(point))) {
+            (Some(a), Some(b)) => prop_assert!((a - b).length() < 1e-6 * (1.0 + a.length())),
+            (a, b) => prop_assert_eq!(a, b),
+        }
+        let back = camera.extrinsics.to_world(camera.extrinsics.to_camera(point));
+        prop_assert!((back - point).length() < 1e-9);
+        prop_assert!((motion.transform_point3(camera.centre()) - moved.centre()).length() < 1e-9);
+    }
+
+    #[test]
+    fn cropping_shifts_pixels_and_resizing_scales_them(
+        camera in cameras(), u in 0.0..1.0, v in 0.0..1.0, w in 1u32..900, h in 1u32..900,
+    ) {
+        prop_assume!(camera.validate().is_ok());
+        let pixel = pixel_of(&camera, u, v);
+        let point = camera.unproject(pixel).map(|ray| ray.origin + ray.direction * 400.0).unwrap();
+        let inside = camera.intrinsics;
+        let (x, y) = (inside.width / 4, inside.height / 5);
+        let cropped = inside.cropped(x, y, inside.width / 2, inside.height / 2).unwrap();
+        let seen = camera.with_intrinsics(cropped).project(point).unwrap();
+        let shift = DVec2::new(f64::from(x), f64::from(y));
+        prop_assert!((seen + shift - pixel).length() < 1e-6);
+        let resized = camera.with_intrinsics(inside.resized(w, h)).project(point).unwrap();
+        let scale = DVec2::new(
+            f64::from(w) / f64::from(inside.width),
+            f64::from(h) / f64::from(inside.height),
+        );
+        prop_assert!((resized - pixel * scale).length() < 1e-6);
+    }
+
+    #[test]
+    fn toml_reads_back_exactly(camera in cameras(), far in 100.0..900.0, size in 1.0..400.0,
+                               q in rotations()) {
+        prop_assume!(camera.validate().is_ok());
+        let DVec2 { x, y } = DVec2::new(camera.intrinsics.cx, camera.intrinsics.cy);
+        let ray = camera.unproject(DVec2::new(x, y)).unwrap();
+        let volume = Volume {
+            center: ray.origin + ray.direction * far,
+            size: DVec3::splat(size),
+            forearm: q * DVec3::Z * 3.0,
+            up: q * DVec3::new(0.1, 1.0, 0.2),
+        };
+        let other = Camera { name: "d".into(), ..camera.clone() };
+        let rig = Rig { cameras: vec![camera, other], volume };
+        prop_assert_eq!(Rig::from_toml(&rig.to_toml().unwrap()).unwrap(), rig);
+    }
+
+    #[test]
+    fn rest_frame_is_a_rotation_with_z_along_the_forearm(
+        forearm in vectors(2.0), up in vectors(2.0), center in vectors(500.0),
+    ) {
+        let volume = Volume { center, size: DVec3::ONE, forearm, up };
+        prop_assume!(volume.validate().is_ok());
+        let frame = volume.rest_frame();
+        let m = frame.matrix3;
+        prop_assert!(m.transpose().abs_diff_eq(m.inverse(), 1e-9) && m.determinant() > 0.0);
+        prop_assert!((m.z_axis - forearm.normalize()).length() < 1e-9);
+        prop_assert!(m.y_axis.dot(up) > 0.0 && m.x_axis.dot(up).abs() < 1e-9);
+        prop_assert_eq!(frame.transform_point3(DVec3::ZERO), center);
+    }
+}
+
+#[test]
+fn windows_beyond_the_image_are_refused() {
+    let inside = Intrinsics::pinhole(120, 90, 100.0);
+    for (x, y, w, h) in [(0, 0, 121, 90), (1, 0, 120, 90), (0, 0, 0, 9), (u32::MAX, 0, 2, 2)] {
+        assert!(inside.cropped(x, y, w, h).is_err(), "{w}×{h} at {x}, {y}");
+    }
+    assert_eq!(inside.cropped(0, 0, 120, 90), Ok(inside));
+}
+
+#[test]
+fn a_point_beyond_the_fold_is_not_seen() {
+    let distortion = Distortion { k1: -0.3, ..Distortion::NONE };
+    let intrinsics = Intrinsics { distortion, ..Intrinsics::pinhole(640, 480, 600.0) };
+    // Without the check the lens would put it back near the middle of the picture.
+    let folded = DVec2::new(1.8, 0.0);
+    assert!(distortion.distort(folded).length() < 0.1);
+    assert_eq!(intrinsics.to_pixel(folded), None);
+}
