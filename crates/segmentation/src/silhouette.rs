@@ -1,0 +1,62 @@
+//! A cleaned mask with its contour and the end of its forearm.
+
+use image::GrayImage;
+
+use crate::clean::{Workspace, keep_largest};
+use crate::contour::Contour;
+use crate::error::{Error, Result};
+use crate::forearm::{Evidence, Forearm};
+
+/// The shortest side of an image with a silhouette, in pixels.
+pub const MIN_SIDE: u32 = 16;
+
+/// The hand in one view.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Silhouette {
+    /// 255 in the hand, 0 elsewhere; one component.
+    pub mask: GrayImage,
+    /// Its outer contour.
+    pub contour: Contour,
+    /// Where its forearm ends.
+    pub forearm: Forearm,
+}
+
+impl Default for Silhouette {
+    /// An empty silhouette, for [`Silhouette::extract_into`] to fill.
+    fn default() -> Self {
+        let forearm = Forearm { end: [0.0; 2], evidence: Evidence::Stump, crossings: 0 };
+        Self { mask: GrayImage::default(), contour: Contour::default(), forearm }
+    }
+}
+
+impl Silhouette {
+    /// The silhouette of a clean mask, at least [`MIN_SIDE`] pixels wide and high, in which hand is
+    /// over 127. Of several components the largest is taken, as in [`clean`](crate::clean).
+    pub fn from_mask(mask: &GrayImage) -> Result<Self> {
+        let mut silhouette = Self::default();
+        silhouette.extract_into(mask, &mut Workspace::default())?;
+        Ok(silhouette)
+    }
+
+    /// [`Silhouette::from_mask`] in this silhouette's memory. After an error its content means
+    /// nothing.
+    pub fn extract_into(&mut self, mask: &GrayImage, workspace: &mut Workspace) -> Result<()> {
+        let (width, height) = mask.dimensions();
+        if width.min(height) < MIN_SIDE {
+            return Err(Error::ImageTooSmall { width, height, minimum: MIN_SIDE });
+        }
+        if self.mask.dimensions() != mask.dimensions() {
+            self.mask = GrayImage::new(width, height);
+        }
+        for (own, &level) in self.mask.iter_mut().zip(mask.iter()) {
+            *own = if level > 127 { 255 } else { 0 };
+        }
+        let pixels = keep_largest(&mut workspace.components, &mut self.mask, width as usize, 1)?;
+        self.contour.trace_again(&self.mask);
+        if self.contour.points.is_empty() {
+            return Err(Error::NoContour { pixels, width, height });
+        }
+        self.forearm = Forearm::find(&self.mask, &self.contour)?;
+        Ok(())
+    }
+}
