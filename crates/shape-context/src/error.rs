@@ -1,0 +1,75 @@
+use crate::points::{MAX_COORDINATE, MAX_POINTS, MIN_MEAN_DISTANCE, MIN_POINTS};
+
+/// The result of everything here that can fail.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Why a contour cannot be described.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// Fewer points than a shape needs.
+    #[error("{points} contour points, of which at least {MIN_POINTS} are needed")]
+    TooFewPoints {
+        /// How many were given.
+        points: usize,
+    },
+    /// More points than can be described in reasonable time: the work grows with their square.
+    #[error("{points} contour points, of which at most {MAX_POINTS} are allowed")]
+    TooManyPoints {
+        /// How many were given.
+        points: usize,
+    },
+    /// A coordinate that is not a number or lies outside ± [`MAX_COORDINATE`].
+    #[error("point {point} is ({x}, {y}): not finite, or beyond ±{MAX_COORDINATE}")]
+    BadPoint {
+        /// Its index in the contour.
+        point: usize,
+        /// Its column.
+        x: f64,
+        /// Its row.
+        y: f64,
+    },
+    /// The forearm's end is not a number or lies outside ± [`MAX_COORDINATE`].
+    #[error("the forearm's end is ({x}, {y}): not finite, or beyond ±{MAX_COORDINATE}")]
+    BadForearmEnd {
+        /// Its column.
+        x: f64,
+        /// Its row.
+        y: f64,
+    },
+    /// All points lie in one place, so that there is no scale.
+    #[error("the mean distance of the points is {mean_distance}, below {MIN_MEAN_DISTANCE}")]
+    Coincident {
+        /// The mean distance of all pairs.
+        mean_distance: f64,
+    },
+    /// A point has nobody within twice the mean distance, so that its histogram is empty.
+    #[error("point {point} has no other point within twice the mean distance, {mean_distance}")]
+    Isolated {
+        /// Its index in the contour.
+        point: usize,
+        /// The mean distance of all pairs.
+        mean_distance: f64,
+    },
+    /// Every contour point lies on the forearm's end: there is no hand axis.
+    #[error("every contour point lies on the forearm's end")]
+    NoHandAxis,
+    /// The contour spreads alike in all directions (a circle, a square): no principal axis.
+    #[error("the contour spreads alike in all directions and has no principal axis")]
+    NoPrincipalAxis,
+    /// The contour encloses nothing, so that its tangents cannot be told from their opposites.
+    #[error("the contour encloses no area, so its tangents have no sense")]
+    NoArea,
+    /// All the neighbours of a point lie on it.
+    #[error("point {point} has no tangent: its neighbours along the contour coincide with it")]
+    NoTangent {
+        /// Its index in the contour.
+        point: usize,
+    },
+    /// A point lies on the centroid and so has no direction from it.
+    #[error("point {point} lies on the centroid of the contour")]
+    AtCentroid {
+        /// Its index in the contour.
+        point: usize,
+    },
+}

@@ -1,0 +1,132 @@
+use crate::{
+    BINS, Error, Orientation, Result,
+    grid::SLOTS,
+    orientation::Axes,
+    pairs::{self, Counts},
+    points::Columns,
+};
+
+/// Computes shape contexts, keeping its memory from one contour to the next.
+#[derive(Debug, Clone)]
+pub struct ShapeContexts {
+    points: Columns,
+    axes: Axes,
+    slots: Vec<u64>,
+    counts: Vec<Counts>,
+    histograms: Vec<f32>,
+}
+
+impl Default for ShapeContexts {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl ShapeContexts {
+    /// An empty workspace.
+    pub fn new() -> Self {
+        Self {
+            points: Columns::default(),
+            axes: Axes::Shared([1.0, 0.0]),
+            slots: Vec::new(),
+            counts: Vec::new(),
+            histograms: Vec::new(),
+        }
+    }
+
+    /// The shape context of every point of a contour: where the others lie as seen from it
+    /// (Belongie, Malik and Puzicha, 2002; the grid of de Campos and Murray, 2006, section 2).
+    ///
+    /// `points` are in pixels, y down, in the order of the contour (which matters to
+    /// [`Orientation::Tangent`] alone). A point does not see itself, those in the same place, or
+    /// those beyond 2μ, where μ is the mean distance of all pairs; each histogram is divided by
+    /// the number it does see.
+    ///
+    /// # Errors
+    /// Too few or too many points, coordinates out of range, all points in one place, a point that
+    /// sees no other, or an orientation that the contour does not define.
+    pub fn compute(
+        &mut self,
+        points: &[[f64; 2]],
+        orientation: Orientation,
+    ) -> Result<Descriptors<'_>> {
+        self.points.load(points)?;
+        let mean_distance = self.points.mean_distance()?;
+        self.axes.find(points, orientation, mean_distance)?;
+        pairs::count(&self.points, mean_distance, &self.axes, &mut self.slots, &mut self.counts);
+        normalise(&self.counts, &mut self.histograms)
+            .map_err(|point| Error::Isolated { point, mean_distance })?;
+        Ok(Descriptors { histograms: &self.histograms, mean_distance, axes: &self.axes })
+    }
+}
+
+/// Divides each row of counts by its sum, or names the row that has none.
+fn normalise(counts: &[[u32; SLOTS]], out: &mut Vec<f32>) -> std::result::Result<(), usize> {
+    out.clear();
+    for (point, row) in counts.iter().enumerate() {
+        let seen: u32 = row[..BINS].iter().sum();
+        if seen == 0 {
+            return Err(point);
+        }
+        let scale = 1.0 / seen as f32;
+        out.extend(row[..BINS].iter().map(|&count| count as f32 * scale));
+    }
+    Ok(())
+}
+
+/// The shape contexts of one contour.
+#[derive(Debug, Clone, Copy)]
+pub struct Descriptors<'a> {
+    histograms: &'a [f32],
+    mean_distance: f64,
+    axes: &'a Axes,
+}
+
+impl<'a> Descriptors<'a> {
+    /// All histograms one after the other, [`BINS`] numbers each, in the order of the points.
+    ///
+    /// Each is non-negative and sums to 1; bin `ring * SECTORS + sector`, the innermost ring first
+    /// and the sectors as in [`sector_edges`](crate::sector_edges).
+    pub fn values(&self) -> &'a [f32] {
+        self.histograms
+    }
+
+    /// The histograms, one slice of [`BINS`] numbers per point.
+    pub fn iter(&self) -> std::slice::ChunksExact<'a, f32> {
+        self.histograms.chunks_exact(BINS)
+    }
+
+    /// The number of points.
+    pub fn len(&self) -> usize {
+        self.histograms.len() / BINS
+    }
+
+    /// Never: a contour without points is an error.
+    pub fn is_empty(&self) -> bool {
+        self.histograms.is_empty()
+    }
+
+    /// The mean distance μ of all pairs of points, in pixels. The rings end at
+    /// [`ring_radii`](crate::ring_radii)`(μ)`.
+    pub fn mean_distance(&self) -> f64 {
+        self.mean_distance
+    }
+
+    /// The unit vector from which the sectors of a point are measured.
+    ///
+    /// # Panics
+    /// When there is no such point.
+    pub fn axis(&self, point: usize) -> [f64; 2] {
+        assert!(point < self.len(), "point {point} of {}", self.len());
+        self.axes.of(point)
+    }
+}
+
+impl<'a> IntoIterator for Descriptors<'a> {
+    type Item = &'a [f32];
+    type IntoIter = std::slice::ChunksExact<'a, f32>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
