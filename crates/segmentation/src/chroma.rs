@@ -1,12 +1,14 @@
 //! The chromatic plane of YCbCr.
 
+/// Grey, and half a level to round.
+const CENTRE: i32 = (128 << 16) + (1 << 15);
+
 /// Blue and red chroma (Cb, Cr) of an sRGB pixel: ITU-R BT.601 in full range, as in JPEG files,
 /// rounded to whole levels; grey is (128, 128).
 #[inline]
 pub fn chroma([r, g, b]: [u8; 3]) -> (u8, u8) {
     let [r, g, b] = [i32::from(r), i32::from(g), i32::from(b)];
-    // Coefficients and offsets in units of 2⁻¹⁶; each row of coefficients sums to zero.
-    const CENTRE: i32 = (128 << 16) + (1 << 15);
+    // In units of 2⁻¹⁶, with a half to round; the coefficients of a row sum to zero.
     let cb = (-11_059 * r - 21_709 * g + 32_768 * b + CENTRE) >> 16;
     let cr = (32_768 * r - 27_439 * g - 5_329 * b + CENTRE) >> 16;
     (cb.min(255) as u8, cr.min(255) as u8)

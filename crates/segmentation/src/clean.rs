@@ -21,7 +21,7 @@ pub struct Cleanup {
 
 impl Default for Cleanup {
     fn default() -> Self {
-        Self { majority_radius: 1, max_hole: 0.02, min_hand: 0.005 }
+        Self { majority_radius: 1, max_hole: 0.01, min_hand: 0.005 }
     }
 }
 

@@ -51,16 +51,19 @@ pub enum Error {
         /// Image height in pixels.
         height: u32,
     },
-    /// The silhouette crosses no border, and neither of its ends looks like a forearm.
+    /// The silhouette crosses no border, and its ends are too alike to tell forearm from fingers.
     #[error(
-        "no forearm: the silhouette crosses no image border and its two ends look alike (elongation {elongation:.2}, raggedness {} and {})",
-        ends[0], ends[1]
+        "no forearm: the silhouette crosses no image border and its ends look alike \
+         (elongation {elongation:.2}, raggedness {:.1} and {:.1}, areas {} and {} pixels)",
+        raggedness[0], raggedness[1], areas[0], areas[1]
     )]
     NoForearm {
         /// Ratio of the standard deviations along the two principal axes, at least 1.
         elongation: f64,
-        /// Contour points per pixel of area at the two ends.
-        ends: [f64; 2],
+        /// Squared number of contour points per pixel of area at the two ends.
+        raggedness: [f64; 2],
+        /// Hand pixels at the two ends.
+        areas: [usize; 2],
     },
     /// Nothing in the picture stands out from the wall.
     #[error(

@@ -3,7 +3,8 @@
 use image::GrayImage;
 
 use crate::contour::Contour;
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::stump::find_stump;
 
 /// What the end of the forearm was recognised by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +36,11 @@ impl Forearm {
     pub fn find(mask: &GrayImage, contour: &Contour) -> Result<Self> {
         match border_crossing(mask) {
             Some(forearm) => Ok(forearm),
-            None => stump(mask, contour),
+            None => Ok(Forearm {
+                end: find_stump(mask, contour)?,
+                evidence: Evidence::Stump,
+                crossings: 0,
+            }),
         }
     }
 }
@@ -76,8 +81,4 @@ fn border_crossing(mask: &GrayImage) -> Option<Forearm> {
     let after = centre((longest.start + last).div_ceil(2))?;
     let end = [f64::midpoint(before[0], after[0]), f64::midpoint(before[1], after[1])];
     Some(Forearm { end, evidence: Evidence::Border, crossings })
-}
-
-fn stump(_mask: &GrayImage, _contour: &Contour) -> Result<Forearm> {
-    Err(Error::NoForearm { elongation: 1.0, ends: [0.0; 2] })
 }

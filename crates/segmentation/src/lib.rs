@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod background;
 mod chroma;
 mod clean;
 mod components;
@@ -12,8 +13,10 @@ mod otsu;
 mod silhouette;
 mod skin;
 mod skin_file;
+mod stump;
 mod wall;
 
+pub use background::{BackgroundModel, BackgroundParams, BackgroundParts};
 pub use chroma::chroma;
 pub use clean::{Cleanup, Workspace, clean, clean_into};
 pub use contour::Contour;
