@@ -1,0 +1,216 @@
+//! Agarwal and Triggs' regression by column-wise quadratic bridges.
+
+use faer::{Mat, MatRef};
+
+use crate::penalised::Penalised;
+use crate::problem::{Design, Problem};
+use crate::{Error, Fit, Kernel, Report, Result, Trace, Width, check, linalg};
+
+/// Largest share of the columns that a step towards a count removes.
+const PRUNED_AT_ONCE: f64 = 0.15;
+/// Times that ν may be halved so that a count of columns survives.
+const HALVINGS: usize = 40;
+
+/// When columns are dropped.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Stop {
+    /// The paper's T_a: a column whose norm is at most this is set to zero. At least 0; its scale
+    /// depends on the kernel.
+    Threshold(f64),
+    /// Keep this many columns, at least 1: the weakest go, at most 15 % a step, until so many are
+    /// left. If ν is too large for that many to survive, it is halved until they do.
+    Count(usize),
+}
+
+/// Agarwal and Triggs' sparse regression (2004, 2006; de Campos and Murray 2006, section 4):
+/// whole columns of A go to zero, so that all targets share the columns kept.
+///
+/// Starting from ridge regression, the penalty ν log‖a‖² of each column a is replaced by the
+/// quadratic "bridge" that touches it at the last solution, ν‖a‖²/‖a_last‖², and the least squares
+/// problem solved again, until A stays as it is. Each step lowers the objective
+/// ‖AF − Y‖² + ν Σ log‖a‖² over the columns kept, which is what the trace holds; it jumps where
+/// columns are dropped.
+///
+/// The paper prints R with ν/a_scale as the rows appended to F, which would penalise ν²/a². As in
+/// its text, the penalty here is ν‖a‖²/a_scale². (A bridge that also matches the gradient of
+/// ν log‖a‖ has half that; this ν is half of such a one's.) The weights are the iteration's own
+/// fixed point: no refit follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Bridges {
+    /// Basis columns.
+    pub kernel: Kernel,
+    /// ν > 0, the strength of the prior. It bounds from above how many columns can survive.
+    pub nu: f64,
+    /// When columns are dropped.
+    pub stop: Stop,
+    /// λ > 0 of the ridge regression to start from.
+    pub lambda: f64,
+    /// Converged when A changes by less than this, relative to its norm; above 0.
+    pub tolerance: f64,
+    /// Most steps, at least 1.
+    pub max_iterations: usize,
+}
+
+impl Default for Bridges {
+    fn default() -> Self {
+        Self {
+            kernel: Kernel::Gaussian(Width::Scatter(0.3)),
+            nu: 0.1,
+            stop: Stop::Threshold(1e-3),
+            lambda: 1.0,
+            tolerance: 1e-6,
+            max_iterations: 1000,
+        }
+    }
+}
+
+impl Bridges {
+    /// Fits X (K×I) to Y (m×I).
+    pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
+        let problem = Problem::new(x, y)?;
+        let design = Design::full(&problem, self.kernel)?;
+        let selected = self.select(&design)?;
+        let model = selected.solved.model(&design, &selected.kept);
+        Ok(Fit { model, report: Report::new(vec![selected.trace], Some(selected.nu)) })
+    }
+
+    /// Runs the bridges over the columns of a design.
+    pub(crate) fn select(&self, design: &Design<'_>) -> Result<Selection> {
+        self.check(design.size())?;
+        let (gram, correlations) = (design.gram(), design.correlations());
+        let energy = linalg::inner(design.targets(), design.targets());
+        let mut bridge = Bridge {
+            kept: (0..design.size()).collect(),
+            weights: ridge(gram.as_ref(), correlations.as_ref(), self.lambda)?,
+            gram,
+            correlations,
+            energy,
+            nu: self.nu,
+        };
+        let mut trace = Trace { converged: false, objective: Vec::new() };
+        let mut halvings = 0;
+        while trace.objective.len() < self.max_iterations && !bridge.kept.is_empty() {
+            let change = bridge.step()?;
+            trace.objective.push(bridge.objective());
+            let pruned = bridge.prune(self.stop);
+            if pruned || change > self.tolerance {
+                continue;
+            }
+            if bridge.all_survive() || matches!(self.stop, Stop::Threshold(_)) {
+                trace.converged = true;
+                break;
+            }
+            if halvings == HALVINGS {
+                break;
+            }
+            halvings += 1;
+            bridge.nu /= 2.0;
+            bridge.weights =
+                ridge(bridge.gram.as_ref(), bridge.correlations.as_ref(), self.lambda)?;
+        }
+        trace.converged |= bridge.kept.is_empty();
+        let solved = bridge.solve()?;
+        Ok(Selection { kept: bridge.kept, nu: bridge.nu, solved, trace })
+    }
+
+    fn check(&self, available: usize) -> Result<()> {
+        check::positive("nu", self.nu)?;
+        check::positive("lambda", self.lambda)?;
+        check::positive("tolerance", self.tolerance)?;
+        check::iterations(self.max_iterations)?;
+        match self.stop {
+            Stop::Threshold(t) if t >= 0.0 && t.is_finite() => Ok(()),
+            Stop::Threshold(value) => Err(Error::Parameter {
+                name: "threshold",
+                value,
+                requirement: "at least 0 and finite",
+            }),
+            Stop::Count(asked) => check::count(asked, available),
+        }
+    }
+}
+
+/// The columns that the bridges kept, and their weights.
+pub(crate) struct Selection {
+    pub(crate) kept: Vec<usize>,
+    pub(crate) solved: Penalised,
+    pub(crate) nu: f64,
+    pub(crate) trace: Trace,
+}
+
+/// The iteration's state, over the columns kept so far.
+struct Bridge {
+    kept: Vec<usize>,
+    gram: Mat<f64>,
+    correlations: Mat<f64>,
+    /// Kept×m.
+    weights: Mat<f64>,
+    /// ‖Y‖².
+    energy: f64,
+    nu: f64,
+}
+
+impl Bridge {
+    /// Least squares with each column's bridge at its present norm.
+    fn solve(&self) -> Result<Penalised> {
+        let norms = linalg::row_norms(self.weights.as_ref());
+        let scales = norms.iter().map(|norm| norm / self.nu.sqrt()).collect();
+        Penalised::solve(self.gram.as_ref(), self.correlations.as_ref(), scales)
+    }
+
+    /// One step; returns how much the weights changed, relative to their norm.
+    fn step(&mut self) -> Result<f64> {
+        let weights = self.solve()?.weights;
+        let change = (&weights - &self.weights).norm_l2();
+        self.weights = weights;
+        Ok(change / self.weights.norm_l2().max(f64::MIN_POSITIVE))
+    }
+
+    /// ‖AF − Y‖² + ν Σ log‖a‖² over the columns that are not zero.
+    fn objective(&self) -> f64 {
+        let fitted = linalg::product(self.gram.as_ref(), self.weights.as_ref());
+        let weights = self.weights.as_ref();
+        let error = self.energy - 2.0 * linalg::inner(weights, self.correlations.as_ref())
+            + linalg::inner(weights, fitted.as_ref());
+        let norms = linalg::row_norms(weights);
+        let logs: f64 = norms.iter().filter(|&&norm| norm > 0.0).map(|norm| 2.0 * norm.ln()).sum();
+        error + self.nu * logs
+    }
+
+    /// Drops columns; returns whether there were any to drop.
+    fn prune(&mut self, stop: Stop) -> bool {
+        let norms = linalg::row_norms(self.weights.as_ref());
+        let mut order: Vec<usize> = (0..norms.len()).collect();
+        match stop {
+            Stop::Threshold(threshold) => order.retain(|&k| norms[k] > threshold),
+            Stop::Count(count) => {
+                let most = (PRUNED_AT_ONCE * norms.len() as f64).ceil() as usize;
+                order.sort_by(|&a, &b| norms[b].total_cmp(&norms[a]));
+                order.truncate(count.max(norms.len() - most));
+                order.sort_unstable();
+            }
+        }
+        let dropped = order.len() < norms.len();
+        if dropped {
+            self.kept = order.iter().map(|&k| self.kept[k]).collect();
+            self.gram = linalg::submatrix(self.gram.as_ref(), &order);
+            self.correlations = linalg::subrows(self.correlations.as_ref(), &order);
+            self.weights = linalg::subrows(self.weights.as_ref(), &order);
+        }
+        dropped
+    }
+
+    /// A column rests only where G_kk‖a‖² ≥ ν: below, it is on its way to zero.
+    fn all_survive(&self) -> bool {
+        let norms = linalg::row_norms(self.weights.as_ref());
+        norms.iter().enumerate().all(|(k, norm)| self.gram[(k, k)] * norm * norm > 0.5 * self.nu)
+    }
+}
+
+/// Ridge weights, p×m.
+fn ridge(gram: MatRef<'_, f64>, correlations: MatRef<'_, f64>, lambda: f64) -> Result<Mat<f64>> {
+    let scales = vec![lambda.sqrt().recip(); gram.ncols()];
+    Ok(Penalised::solve(gram, correlations, scales)?.weights)
+}

@@ -1,0 +1,100 @@
+//! The few dense operations in use, each sequential or cut into fixed blocks, so that no result
+//! depends on the number of threads.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor;
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_inverse::invert_lower_triangular;
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
+};
+use faer::prelude::{Reborrow, ReborrowMut};
+use faer::{Accum, Mat, MatRef, Par, Spec};
+use rayon::prelude::*;
+
+/// Columns of a product that one task computes.
+const BLOCK: usize = 96;
+
+/// A·B.
+pub(crate) fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
+    let mut out = Mat::zeros(a.nrows(), b.ncols());
+    matmul(out.as_mut(), Accum::Replace, a, b, 1.0, Par::Seq);
+    out
+}
+
+/// XᵀX, exactly symmetric.
+pub(crate) fn gram(x: MatRef<'_, f64>) -> Mat<f64> {
+    let p = x.ncols();
+    let mut out = Mat::zeros(p, p);
+    if p == 0 {
+        return out;
+    }
+    out.as_mut().par_col_chunks_mut(BLOCK).enumerate().for_each(|(block, mut columns)| {
+        let start = block * BLOCK;
+        let width = columns.ncols();
+        let below = columns.rb_mut().subrows_mut(start, p - start);
+        let lhs = x.subcols(start, p - start).transpose();
+        matmul(below, Accum::Replace, lhs, x.subcols(start, width), 1.0, Par::Seq);
+    });
+    for j in 1..p {
+        for i in 0..j {
+            out[(i, j)] = out[(j, i)];
+        }
+    }
+    out
+}
+
+/// Lower Cholesky factor of a symmetric matrix (its lower half is read), with zeros above;
+/// `None` where it is not positive definite to working precision.
+pub(crate) fn cholesky(mut a: Mat<f64>) -> Option<Mat<f64>> {
+    let n = a.nrows();
+    let params = Spec::default();
+    let mut memory =
+        MemBuffer::new(factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, params));
+    let stack = MemStack::new(&mut memory);
+    factor::cholesky_in_place(a.as_mut(), Default::default(), Par::Seq, stack, params).ok()?;
+    for j in 0..n {
+        a.col_as_slice_mut(j)[..j].fill(0.0);
+    }
+    Some(a)
+}
+
+/// Inverse of a lower triangular matrix.
+pub(crate) fn lower_inverse(l: MatRef<'_, f64>) -> Mat<f64> {
+    let mut out = Mat::zeros(l.nrows(), l.ncols());
+    invert_lower_triangular(out.as_mut(), l, Par::Seq);
+    out
+}
+
+/// Solves L Lᵀ X = B in place of B.
+pub(crate) fn cholesky_solve(l: MatRef<'_, f64>, b: &mut Mat<f64>) {
+    solve_lower_triangular_in_place(l, b.as_mut(), Par::Seq);
+    solve_upper_triangular_in_place(l.transpose(), b.as_mut(), Par::Seq);
+}
+
+/// The square submatrix on `kept`.
+pub(crate) fn submatrix(a: MatRef<'_, f64>, kept: &[usize]) -> Mat<f64> {
+    Mat::from_fn(kept.len(), kept.len(), |i, j| a[(kept[i], kept[j])])
+}
+
+/// The rows of `a` in `kept`.
+pub(crate) fn subrows(a: MatRef<'_, f64>, kept: &[usize]) -> Mat<f64> {
+    Mat::from_fn(kept.len(), a.ncols(), |i, j| a.rb()[(kept[i], j)])
+}
+
+/// Euclidean norm of each row.
+pub(crate) fn row_norms(a: MatRef<'_, f64>) -> Vec<f64> {
+    (0..a.nrows()).map(|i| a.row(i).iter().map(|v| v * v).sum::<f64>().sqrt()).collect()
+}
+
+/// Sum of aᵢⱼ bᵢⱼ.
+pub(crate) fn inner(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> f64 {
+    (0..a.ncols()).map(|j| (0..a.nrows()).map(|i| a[(i, j)] * b[(i, j)]).sum::<f64>()).sum()
+}
+
+/// y += s·x.
+pub(crate) fn axpy(y: &mut [f64], s: f64, x: &[f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += s * x;
+    }
+}

@@ -1,0 +1,95 @@
+//! The fitted regressor: one type, whichever way it was fitted.
+
+mod parts;
+mod predict;
+
+use faer::MatRef;
+
+pub use parts::{Basis, Factor, ModelParts, Posterior};
+pub use predict::Scratch;
+
+use crate::Result;
+
+/// A fitted regressor from K inputs to m targets, with its uncertainty.
+///
+/// Every fitter of this crate makes one: linear or Gaussian basis columns, weights, the scaling of
+/// inputs and targets, and the posterior. If every column was pruned it predicts the mean, with
+/// the targets' own spread as its standard deviation.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "ModelParts", into = "ModelParts"))]
+pub struct Model {
+    parts: ModelParts,
+}
+
+impl Model {
+    /// Puts a model together from its parts, checked against each other.
+    pub fn from_parts(parts: ModelParts) -> Result<Self> {
+        parts.check()?;
+        Ok(Self { parts })
+    }
+
+    /// The model's parts.
+    pub fn into_parts(self) -> ModelParts {
+        self.parts
+    }
+
+    /// A look at the parts.
+    pub fn parts(&self) -> &ModelParts {
+        &self.parts
+    }
+
+    /// A model whose parts a fitter has just computed.
+    pub(crate) fn trusted(parts: ModelParts) -> Self {
+        debug_assert_eq!(parts.check(), Ok(()));
+        Self { parts }
+    }
+
+    /// Length K of an input vector.
+    pub fn inputs(&self) -> usize {
+        self.parts.inputs
+    }
+
+    /// Length m of a target vector.
+    pub fn outputs(&self) -> usize {
+        self.parts.outputs
+    }
+
+    /// Indices of the inputs that the model reads, ascending. The others may hold anything.
+    pub fn selected_features(&self) -> &[usize] {
+        &self.parts.features
+    }
+
+    /// Indices of the training samples that are kernel centres; empty for a linear model.
+    pub fn kept_samples(&self) -> &[usize] {
+        match &self.parts.basis {
+            Basis::Linear => &[],
+            Basis::Gaussian { samples, .. } => samples,
+        }
+    }
+
+    /// The weights of the columns kept, m×p, in the targets' units: a column belongs to a selected
+    /// feature (linear) or to a kept sample (Gaussian).
+    pub fn weights(&self) -> MatRef<'_, f64> {
+        MatRef::from_column_major_slice(&self.parts.weights, self.parts.outputs, self.parts.size())
+    }
+
+    /// Standard deviation of each target's noise, in its units.
+    pub fn noise(&self) -> &[f64] {
+        &self.parts.noise
+    }
+}
+
+impl TryFrom<ModelParts> for Model {
+    type Error = crate::Error;
+
+    fn try_from(parts: ModelParts) -> Result<Self> {
+        Self::from_parts(parts)
+    }
+}
+
+impl From<Model> for ModelParts {
+    fn from(model: Model) -> Self {
+        model.into_parts()
+    }
+}
