@@ -41,8 +41,8 @@ pub enum Error {
         /// The rig's names.
         names: Vec<String>,
     },
-    /// A number is NaN or infinite.
-    #[error("camera `{camera}`: {field} is not finite")]
+    /// A number is NaN, infinite or absurdly large.
+    #[error("camera `{camera}`: {field} is not finite or far too large")]
     NotFinite {
         /// The camera.
         camera: String,
@@ -70,7 +70,8 @@ pub enum Error {
         /// Along y, px.
         fy: f64,
     },
-    /// The principal point lies outside the image.
+    /// The principal point lies outside the image. A single [`Camera`](crate::Camera) may have
+    /// it there, when it is that of an image cropped off its middle; a rig's may not.
     #[error("camera `{camera}`: principal_point_px {point} lies outside the image")]
     PrincipalPoint {
         /// The camera.

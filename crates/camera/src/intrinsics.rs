@@ -106,6 +106,11 @@ impl Intrinsics {
         }
     }
 
+    /// The principal point, px. It may lie outside a cropped image.
+    pub fn principal_point(&self) -> DVec2 {
+        DVec2::new(self.cx, self.cy)
+    }
+
     /// Whether a pixel position lies within the image.
     pub fn contains(&self, pixel: DVec2) -> bool {
         (0.0..=f64::from(self.width)).contains(&pixel.x)
@@ -126,9 +131,8 @@ impl Intrinsics {
         if ![fx, fy].iter().all(|&f| f > 0.0 && f <= Self::MAX_FOCAL) {
             return Err(Error::FocalLength { camera: camera(), fx, fy });
         }
-        let point = DVec2::new(self.cx, self.cy);
-        if !self.contains(point) {
-            return Err(Error::PrincipalPoint { camera: camera(), point });
+        if ![self.cx, self.cy].iter().all(|c| c.abs() <= Self::MAX_FOCAL) {
+            return Err(Error::NotFinite { camera: camera(), field: "principal_point_px" });
         }
         let (w, h) = (f64::from(width), f64::from(height));
         match [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)]
@@ -143,11 +147,11 @@ impl Intrinsics {
 
     /// From the normalised plane to pixels, leaving out the lens.
     fn scaled(&self, normalised: DVec2) -> DVec2 {
-        normalised * DVec2::new(self.fx, self.fy) + DVec2::new(self.cx, self.cy)
+        normalised * DVec2::new(self.fx, self.fy) + self.principal_point()
     }
 
     /// From pixels to the normalised plane, leaving out the lens.
     fn unscaled(&self, pixel: DVec2) -> DVec2 {
-        (pixel - DVec2::new(self.cx, self.cy)) / DVec2::new(self.fx, self.fy)
+        (pixel - self.principal_point()) / DVec2::new(self.fx, self.fy)
     }
 }

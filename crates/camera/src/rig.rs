@@ -34,8 +34,8 @@ impl Rig {
         Ok(rig)
     }
 
-    /// Checks each camera and the volume, that names are unique, and that every camera sees
-    /// the middle of the volume.
+    /// Checks each camera and the volume, that names are unique, and that every camera has its
+    /// principal point inside its picture and sees the middle of the volume.
     pub fn validate(&self) -> Result<()> {
         self.validate_names()?;
         self.volume.validate()?;
@@ -60,10 +60,14 @@ impl Rig {
 
     fn validate_view(&self, camera: &Camera) -> Result<()> {
         let name = || camera.name.clone();
-        // Written so that an overflow to NaN counts as behind.
+        // An overflow to NaN counts as behind.
         let in_front = camera.extrinsics.to_camera(self.volume.center).z > 0.0;
         if !in_front {
             return Err(Error::VolumeBehind { camera: name() });
+        }
+        let point = camera.intrinsics.principal_point();
+        if !camera.intrinsics.contains(point) {
+            return Err(Error::PrincipalPoint { camera: name(), point });
         }
         match camera.project(self.volume.center) {
             Some(pixel) if camera.intrinsics.contains(pixel) => Ok(()),

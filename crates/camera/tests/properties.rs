@@ -151,8 +151,7 @@ proptest! {
     fn toml_reads_back_exactly(camera in cameras(), far in 100.0..900.0, size in 1.0..400.0,
                                q in rotations()) {
         prop_assume!(camera.validate().is_ok());
-        let DVec2 { x, y } = DVec2::new(camera.intrinsics.cx, camera.intrinsics.cy);
-        let ray = camera.unproject(DVec2::new(x, y)).unwrap();
+        let ray = camera.unproject(camera.intrinsics.principal_point()).unwrap();
         let volume = Volume {
             center: ray.origin + ray.direction * far,
             size: DVec3::splat(size),

@@ -121,10 +121,10 @@ fn contradictory_cameras_are_refused_by_name() {
         let focal = format!("focal_px = {focal}");
         refused!(edited(&[("focal_px = 265", &focal)]), Error::FocalLength { .. });
     }
-    for (key, value) in [("principal_point_px", "[121, 45]"), ("principal_point_px", "[60, nan]")] {
-        let more = format!("width = 120\n {key} = {value}");
-        refused!(edited(&[("width = 120", &more)]), Error::PrincipalPoint { .. });
-    }
+    let middle =
+        |c: &str| edited(&[("width = 120", &format!("width = 120\n principal_point_px = {c}"))]);
+    refused!(middle("[121, 45]"), Error::PrincipalPoint { .. });
+    refused!(middle("[60, nan]"), Error::NotFinite { field: "principal_point_px", .. });
     let lens = |k: &str| edited(&[("width = 120", &format!("width = 120\n distortion = {k}"))]);
     refused!(lens("[nan, 0, 0, 0, 0]"), Error::NotFinite { field: "distortion", .. });
     // The corners are at a radius of 0.283, where r (1 + k1 r²) must still grow and reach it.
