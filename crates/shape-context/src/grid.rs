@@ -1,4 +1,5 @@
 //! The log-polar grid: which bin a displacement falls into.
+#![allow(clippy::inline_always, reason = "must be compiled with the caller's instruction set")]
 
 use std::f64::consts::TAU;
 
@@ -70,7 +71,6 @@ pub(crate) struct Grid {
 
 impl Grid {
     /// The grid of points with this mean distance along this axis (a unit vector).
-    #[allow(clippy::inline_always, reason = "must be compiled with the caller's instruction set")]
     #[inline(always)]
     pub(crate) fn new(mean_distance: f64, axis: [f64; 2]) -> Self {
         let squared = mean_distance * mean_distance * (1.0 - HAIR);
@@ -85,22 +85,17 @@ impl Grid {
     /// far, or in the same place and so in no direction (as a point is from itself).
     ///
     /// Comparisons and selections only, so that loops over it become vector instructions.
-    #[allow(clippy::inline_always, reason = "must be compiled with the caller's instruction set")]
     #[inline(always)]
     pub(crate) fn slot(&self, dx: f64, dy: f64) -> u64 {
         let squared = dx * dx + dy * dy;
         let x = self.cos * dx + self.sin * dy;
         let y = self.cos * dy - self.sin * dx;
 
-        const STEP: u64 = SECTORS as u64;
-        let [a, b, c, d, e] = self.squared_radii;
         let mut ring = 0;
-        ring += if squared >= a { STEP } else { 0 };
-        ring += if squared >= b { STEP } else { 0 };
-        ring += if squared >= c { STEP } else { 0 };
-        ring += if squared >= d { STEP } else { 0 };
-        ring += if squared >= e { STEP } else { 0 };
-        ring = if squared == 0.0 { BINS as u64 } else { ring };
+        for radius in self.squared_radii {
+            ring += u64::from(squared >= radius);
+        }
+        ring = if squared == 0.0 { RINGS as u64 } else { ring };
 
         // The sector within the first quadrant, mirrored into the quadrant at hand.
         let (u, v) = (x.abs(), y.abs());
@@ -109,7 +104,7 @@ impl Grid {
         sector += u64::from(v >= TAN_60 * u);
         sector = if (x < 0.0) == (y < 0.0) { sector } else { 5 - sector };
         sector += if y < 0.0 { 6 } else { 0 };
-        ring + sector
+        ring * SECTORS as u64 + sector
     }
 }
 

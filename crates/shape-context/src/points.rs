@@ -42,7 +42,7 @@ impl Columns {
     pub(crate) fn mean_distance(&self) -> Result<f64> {
         let n = self.xs.len();
         let pairs = (n * (n - 1) / 2) as f64;
-        let mean_distance = pairs::distance_sum(&self.xs, &self.ys) / pairs;
+        let mean_distance = pairs::distance_sum(self) / pairs;
         if mean_distance < MIN_MEAN_DISTANCE {
             return Err(Error::Coincident { mean_distance });
         }

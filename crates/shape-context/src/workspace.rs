@@ -92,18 +92,8 @@ impl<'a> Descriptors<'a> {
     }
 
     /// The histograms, one slice of [`BINS`] numbers per point.
-    pub fn iter(&self) -> std::slice::ChunksExact<'a, f32> {
+    pub fn rows(&self) -> std::slice::ChunksExact<'a, f32> {
         self.histograms.chunks_exact(BINS)
-    }
-
-    /// The number of points.
-    pub fn len(&self) -> usize {
-        self.histograms.len() / BINS
-    }
-
-    /// Never: a contour without points is an error.
-    pub fn is_empty(&self) -> bool {
-        self.histograms.is_empty()
     }
 
     /// The mean distance μ of all pairs of points, in pixels. The rings end at
@@ -117,16 +107,8 @@ impl<'a> Descriptors<'a> {
     /// # Panics
     /// When there is no such point.
     pub fn axis(&self, point: usize) -> [f64; 2] {
-        assert!(point < self.len(), "point {point} of {}", self.len());
+        let points = self.rows().len();
+        assert!(point < points, "point {point} of {points}");
         self.axes.of(point)
-    }
-}
-
-impl<'a> IntoIterator for Descriptors<'a> {
-    type Item = &'a [f32];
-    type IntoIter = std::slice::ChunksExact<'a, f32>;
-
-    fn into_iter(self) -> Self::IntoIter {
-        self.iter()
     }
 }

@@ -1,0 +1,132 @@
+//! Contours that cannot be described are refused by name.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use phalanx_shape_context::{
+    Chain, Error, MAX_POINTS, Orientation, ShapeContexts, hand_axis, mean_distance,
+};
+use proptest::prelude::*;
+
+const BENT: [[f64; 2]; 4] = [[0.0, 0.0], [4.0, 0.0], [9.0, 1.0], [9.0, 5.0]];
+
+fn error(points: &[[f64; 2]], orientation: Orientation) -> Error {
+    ShapeContexts::new().compute(points, orientation).map(|_| ()).expect_err("a refusal")
+}
+
+#[test]
+fn too_few_and_too_many_points() {
+    let points = vec![[1.0, 2.0]; MAX_POINTS + 1];
+    assert_eq!(mean_distance(&[]), Err(Error::TooFewPoints { points: 0 }));
+    assert_eq!(error(&points[..2], Orientation::Centroid), Error::TooFewPoints { points: 2 });
+    assert_eq!(mean_distance(&points), Err(Error::TooManyPoints { points: MAX_POINTS + 1 }));
+}
+
+#[test]
+fn coordinates_out_of_range() {
+    for bad in [f64::NAN, f64::INFINITY, -1e300] {
+        let mut points = BENT;
+        points[2][1] = bad;
+        assert!(matches!(mean_distance(&points), Err(Error::BadPoint { point: 2, .. })));
+        assert!(matches!(hand_axis(&BENT, [bad, 0.0]), Err(Error::BadForearmEnd { .. })));
+    }
+}
+
+#[test]
+fn points_in_one_place() {
+    assert_eq!(mean_distance(&[[3.0, 4.0]; 9]), Err(Error::Coincident { mean_distance: 0.0 }));
+    assert_eq!(hand_axis(&[[3.0, 4.0]; 9], [3.0, 4.0]), Err(Error::NoHandAxis));
+}
+
+#[test]
+fn a_point_far_from_all_others() {
+    let mut points: Vec<_> = (0..50).map(|i| [f64::from(i % 7), f64::from(i / 7)]).collect();
+    points.push([1e6, 0.0]);
+    assert!(matches!(error(&points, Orientation::ImageAxes), Error::Isolated { point: 50, .. }));
+}
+
+#[test]
+fn shapes_without_a_direction() {
+    let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    assert_eq!(error(&square, Orientation::PrincipalAxis), Error::NoPrincipalAxis);
+    let cross = [[0.0, 0.0], [3.0, 0.0], [-3.0, 0.0], [0.0, 3.0], [0.0, -3.0]];
+    assert_eq!(error(&cross, Orientation::Centroid), Error::AtCentroid { point: 0 });
+    let line = [[0.0, 0.0], [1.0, 2.0], [2.0, 4.0], [3.0, 6.0]];
+    assert_eq!(error(&line, Orientation::Tangent { chain: Chain::Open }), Error::NoArea);
+    let mut stuck = vec![[0.0, 0.0]; 9];
+    stuck.extend([[5.0, 0.0], [5.0, 5.0], [0.0, 5.0]]);
+    let tangent = Orientation::Tangent { chain: Chain::Open };
+    assert_eq!(error(&stuck, tangent), Error::NoTangent { point: 0 });
+}
+
+/// Tangents of a circle are a quarter turn ahead of its radii; of a chain too, at its ends.
+#[test]
+fn tangents_run_round_the_area() {
+    let circle: Vec<[f64; 2]> = (0..40)
+        .map(|i| (TAU * f64::from(i) / 40.0).sin_cos())
+        .map(|(sin, cos)| [9.0 * cos, 9.0 * sin])
+        .collect();
+    let mut contexts = ShapeContexts::new();
+    for (chain, points, slack) in
+        [(Chain::Closed, &circle[..], 1e-9), (Chain::Open, &circle[..30], 0.5)]
+    {
+        let found = contexts.compute(points, Orientation::Tangent { chain }).expect("tangents");
+        for (i, p) in points.iter().enumerate() {
+            let [x, y] = found.axis(i);
+            let ahead = y.atan2(x) - p[1].atan2(p[0]) - FRAC_PI_2;
+            assert!(ahead.sin().abs() <= slack && ahead.cos() > 0.0, "{chain:?} {i}: {ahead}");
+        }
+    }
+}
+
+/// Where a contour runs out along a line one pixel wide and back, its tip's tangent is across it.
+#[test]
+fn the_tip_of_a_thin_line_has_a_tangent() {
+    let mut points: Vec<[f64; 2]> = (0..6).map(|y| [0.0, -f64::from(y)]).collect();
+    points.extend((0..5).rev().map(|y| [0.0, -f64::from(y)]));
+    points.extend([[1.0, 1.0], [1.0, 3.0], [-1.0, 3.0], [-1.0, 1.0]]);
+    let mut contexts = ShapeContexts::new();
+    let orientation = Orientation::Tangent { chain: Chain::Closed };
+    let forth = contexts.compute(&points, orientation).expect("tangents").axis(5);
+    assert_eq!(forth, [1.0, 0.0]);
+    points.reverse();
+    let tip = points.len() - 6;
+    let back = contexts.compute(&points, orientation).expect("tangents").axis(tip);
+    assert_eq!(back, [1.0, 0.0]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..Default::default() })]
+
+    /// Whatever the points, an answer is finite.
+    #[test]
+    fn never_panics_and_never_answers_nan(
+        points in prop::collection::vec([any::<f64>(), any::<f64>()], 0..12),
+        small in prop::collection::vec([0..3_i8, 0..3_i8], 0..12),
+        end in [any::<f64>(), any::<f64>()],
+    ) {
+        let small: Vec<_> = small.iter().map(|p| p.map(f64::from)).collect();
+        let tiny: Vec<_> = points.iter().map(|p| p.map(|c| c % 1e-8)).collect();
+        let mut contexts = ShapeContexts::new();
+        for points in [points, small, tiny] {
+            for orientation in [
+                Orientation::ImageAxes,
+                Orientation::Tangent { chain: Chain::Closed },
+                Orientation::Tangent { chain: Chain::Open },
+                Orientation::Centroid,
+                Orientation::PrincipalAxis,
+                Orientation::HandAxis { forearm_end: end },
+                Orientation::HandAxis { forearm_end: [1.0, 1.0] },
+            ] {
+                if let Ok(found) = contexts.compute(&points, orientation) {
+                    prop_assert_eq!(found.rows().len(), points.len());
+                    prop_assert!(found.mean_distance().is_finite());
+                    for (i, row) in found.rows().enumerate() {
+                        prop_assert!((row.iter().sum::<f32>() - 1.0).abs() < 1e-5);
+                        let [x, y] = found.axis(i);
+                        prop_assert!((x.hypot(y) - 1.0).abs() < 1e-9);
+                    }
+                }
+            }
+        }
+    }
+}
