@@ -1,1 +1,15 @@
-//! Renders a hand of spheres, cones and generalised cylinders through a calibrated camera
+#![doc = include_str!("../README.md")]
+
+mod appearance;
+mod error;
+mod fill;
+mod outline;
+mod renderer;
+mod solid;
+mod supersampling;
+mod surface;
+
+pub use appearance::{Appearance, Background};
+pub use error::{Error, Result};
+pub use renderer::{DepthMap, Renderer};
+pub use supersampling::Supersampling;

@@ -1,0 +1,131 @@
+//! Outlines: what a solid looks like through a pinhole.
+//!
+//! A ball, squashed or not, projects to an ellipse, and a hull of balls to the hull of their
+//! ellipses (Hartley and Zisserman, 2004, *Multiple View Geometry*, § 8.3: a quadric's outline
+//! is the conic whose dual is P Q* Pᵀ).
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DMat2, DMat3, DVec2, DVec3};
+use phalanx_hand::{Ball, Primitive};
+
+/// Nothing may come nearer to the camera's plane than this, mm.
+const NEAR: f64 = 1.0;
+
+/// How far the polygon may stay inside the outline, px.
+const DEVIATION: f64 = 0.02;
+
+/// A filled ellipse of the normalised image plane: middle + √shape · (unit disc).
+#[derive(Clone, Copy, Default)]
+struct Ellipse {
+    middle: DVec2,
+    shape: DMat2,
+}
+
+impl Ellipse {
+    /// The outline of a ball, in the camera's frame, squashed by `squash` about `anchor`; the
+    /// least depth of the squashed ball where that is too near.
+    fn of(ball: &Ball, squash: DMat3, anchor: DVec3) -> Result<Self, f64> {
+        let c = anchor + squash * (ball.center - anchor);
+        let m = squash * squash.transpose() * (ball.radius * ball.radius);
+        let depth_radius = m.z_axis.z.sqrt();
+        let nearest = c.z - depth_radius;
+        if nearest <= NEAR || nearest.is_nan() {
+            return Err(nearest);
+        }
+        // The dual conic c cᵀ − m over its corner k, expanded so that nothing cancels.
+        let k = nearest * (c.z + depth_radius);
+        let (u, b) = (c.truncate(), m.z_axis.truncate());
+        let outer = |v: DVec2, w: DVec2| DMat2::from_cols(v * w.x, v * w.y);
+        let middle = (u * c.z - b) / k;
+        let corner = DMat2::from_cols(m.x_axis.truncate(), m.y_axis.truncate());
+        let shape = corner / k
+            + (outer(u, u) * m.z_axis.z - (outer(u, b) + outer(b, u)) * c.z + outer(b, b))
+                / (k * k);
+        Ok(Self { middle, shape })
+    }
+
+    /// The square of the larger half-axis, at most doubled.
+    fn size(&self) -> f64 {
+        self.shape.x_axis.x + self.shape.y_axis.y
+    }
+
+    /// The furthest point towards `normal`, of any length, and its dot product with `normal`.
+    fn support(&self, normal: DVec2) -> (f64, DVec2) {
+        let across = self.shape * normal;
+        let half_width = normal.dot(across).sqrt();
+        (normal.dot(self.middle) + half_width, self.middle + across / half_width)
+    }
+}
+
+/// Appends the corners of a solid's outline, in order, in the normalised image plane; `focal`
+/// (px) decides how many. A solid too near gives its least depth, mm.
+pub(crate) fn trace(
+    solid_in_camera: &Primitive,
+    focal: f64,
+    corners: &mut Vec<DVec2>,
+) -> Result<(), f64> {
+    let balls = solid_in_camera.balls();
+    let squash = solid_in_camera.squash();
+    let mut ellipses = [Ellipse::default(); 3];
+    for (ellipse, ball) in ellipses.iter_mut().zip(balls) {
+        *ellipse = Ellipse::of(ball, squash, balls[0].center)?;
+    }
+    walk(&ellipses[..balls.len()], focal, corners);
+    Ok(())
+}
+
+/// Walks once around the hull of some ellipses by the direction of its normal: the furthest
+/// ellipse in each direction gives the corner.
+fn walk(ellipses: &[Ellipse], focal: f64, corners: &mut Vec<DVec2>) {
+    let largest = ellipses.iter().max_by(|a, b| a.size().total_cmp(&b.size()));
+    let Some(largest) = largest else { return };
+    // Directions evenly spread around the largest ellipse: normals of the circle that it maps
+    // to by its Cholesky factor. A chord of a circle of radius a spanning 2π/n stays within
+    // a π²/2n² of it.
+    let radius = largest.size().sqrt() * focal;
+    let steps = (PI * (radius / (2.0 * DEVIATION)).sqrt()).ceil().clamp(12.0, 512.0) as u32;
+    let [a, b, c] = [largest.shape.x_axis.x, largest.shape.x_axis.y, largest.shape.y_axis.y];
+    let l11 = a.sqrt();
+    let l21 = b / l11;
+    let l22 = (c - l21 * l21).sqrt();
+    let normal_of = |u: DVec2| DVec2::new((u.x - l21 * u.y / l22) / l11, u.y / l22);
+
+    let turn = DVec2::from_angle(TAU / f64::from(steps));
+    let mut on_circle = DVec2::X;
+    let mut normal = normal_of(on_circle);
+    let (mut leader, mut corner) = furthest(ellipses, normal);
+    for _ in 0..steps {
+        corners.push(corner);
+        on_circle = turn.rotate(on_circle);
+        let next_normal = normal_of(on_circle);
+        let (next_leader, next_corner) = furthest(ellipses, next_normal);
+        if next_leader != leader {
+            let line = [&ellipses[leader], &ellipses[next_leader]];
+            corners.extend(tangent(line, normal, next_normal));
+        }
+        (normal, leader, corner) = (next_normal, next_leader, next_corner);
+    }
+}
+
+/// The ellipse that reaches furthest towards `normal`, and its furthest point.
+fn furthest(ellipses: &[Ellipse], normal: DVec2) -> (usize, DVec2) {
+    let mut best = (0, ellipses[0].support(normal));
+    for (index, ellipse) in ellipses.iter().enumerate().skip(1) {
+        let support = ellipse.support(normal);
+        if support.0 > best.1.0 {
+            best = (index, support);
+        }
+    }
+    (best.0, best.1.1)
+}
+
+/// Where the common tangent of two ellipses touches them, when the first leads at one normal
+/// and the second at the next.
+fn tangent([first, second]: [&Ellipse; 2], from: DVec2, to: DVec2) -> [DVec2; 2] {
+    let lead = |normal: DVec2| first.support(normal).0 - second.support(normal).0;
+    let (before, after) = (lead(from), lead(to));
+    let share = if before > after { (before / (before - after)).clamp(0.0, 1.0) } else { 0.5 };
+    let normal = from.lerp(to, share);
+    [first.support(normal).1, second.support(normal).1]
+}

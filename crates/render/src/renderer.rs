@@ -1,0 +1,281 @@
+//! The renderer: one camera and its buffers.
+
+use glam::{DAffine3, DVec2, DVec3};
+use image::{GrayImage, RgbImage};
+use phalanx_camera::{Camera, Intrinsics};
+use phalanx_hand::Primitive;
+
+use crate::appearance::Sensor;
+use crate::fill::Filler;
+use crate::outline;
+use crate::solid::Scene;
+use crate::surface::Hit;
+use crate::{Appearance, Error, Result, Supersampling};
+
+/// Depth along the camera's axis, row by row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DepthMap {
+    /// Width, px.
+    pub width: u32,
+    /// Height, px.
+    pub height: u32,
+    /// z in the camera's frame at each pixel's centre, mm; infinity where there is nothing.
+    pub depths: Vec<f32>,
+}
+
+/// Renders solids, given in the world's millimetres, through one camera.
+///
+/// It keeps its buffers from picture to picture; build one per camera and thread. All of a
+/// solid must be at least 1 mm in front of the camera's plane: else every call answers
+/// [`Error::TooNear`].
+pub struct Renderer {
+    intrinsics: Intrinsics,
+    to_camera: DAffine3,
+    /// The largest distance of the picture from the middle of the normalised plane.
+    reach: f64,
+    /// Corners of all outlines, px, and where each ends.
+    corners: Vec<DVec2>,
+    ends: Vec<usize>,
+    /// One outline in the normalised plane.
+    ideal: Vec<DVec2>,
+    scene: Scene,
+    filler: Filler,
+    /// One sample of each pixel, and how many samples were covered.
+    mask: Vec<u8>,
+    counts: Vec<u16>,
+}
+
+impl Renderer {
+    /// Longest edge that is drawn straight through a lens, px.
+    const STRAIGHT: f64 = 8.0;
+
+    /// A renderer for this camera, which must be valid.
+    pub fn new(camera: &Camera) -> Result<Self> {
+        camera.validate()?;
+        let intrinsics = camera.intrinsics;
+        let (w, h) = (f64::from(intrinsics.width), f64::from(intrinsics.height));
+        let corners = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)].map(DVec2::from);
+        let radii = corners.iter().filter_map(|&c| intrinsics.to_normalised(c)).map(DVec2::length);
+        Ok(Self {
+            intrinsics,
+            to_camera: DAffine3::from_mat3_translation(
+                camera.extrinsics.rotation,
+                camera.extrinsics.translation,
+            ),
+            reach: radii.fold(0.0, f64::max),
+            corners: Vec::new(),
+            ends: Vec::new(),
+            ideal: Vec::new(),
+            scene: Scene::default(),
+            filler: Filler::new(intrinsics.width, intrinsics.height),
+            mask: Vec::new(),
+            counts: Vec::new(),
+        })
+    }
+
+    /// Width and height of the pictures, px.
+    pub fn size(&self) -> (u32, u32) {
+        (self.intrinsics.width, self.intrinsics.height)
+    }
+
+    /// The solids' silhouette: 255 where a pixel's centre is covered, else 0. Outlines are
+    /// accurate to 0.02 px.
+    pub fn silhouette(&mut self, primitives: &[Primitive]) -> Result<GrayImage> {
+        let mut image = GrayImage::default();
+        self.silhouette_into(primitives, &mut image)?;
+        Ok(image)
+    }
+
+    /// [`silhouette`](Self::silhouette) into an image, which is replaced if its size is not
+    /// the camera's.
+    pub fn silhouette_into(
+        &mut self,
+        primitives: &[Primitive],
+        image: &mut GrayImage,
+    ) -> Result<()> {
+        self.trace(primitives)?;
+        self.fit(image);
+        self.fill(DVec2::splat(0.5), image);
+        Ok(())
+    }
+
+    /// How much of each pixel the solids cover, 0 to 255, by its samples.
+    pub fn coverage(
+        &mut self,
+        primitives: &[Primitive],
+        sampling: Supersampling,
+    ) -> Result<GrayImage> {
+        let mut image = GrayImage::default();
+        self.coverage_into(primitives, sampling, &mut image)?;
+        Ok(image)
+    }
+
+    /// [`coverage`](Self::coverage) into an image, which is replaced if its size is not the
+    /// camera's.
+    pub fn coverage_into(
+        &mut self,
+        primitives: &[Primitive],
+        sampling: Supersampling,
+        image: &mut GrayImage,
+    ) -> Result<()> {
+        self.trace(primitives)?;
+        self.fit(image);
+        let mut mask = std::mem::take(&mut self.mask);
+        mask.resize(image.len(), 0);
+        self.counts.clear();
+        self.counts.resize(image.len(), 0);
+        for offset in sampling.offsets() {
+            mask.fill(0);
+            self.fill(offset, &mut mask);
+            for (count, &covered) in self.counts.iter_mut().zip(&mask) {
+                *count += u16::from(covered & 1);
+            }
+        }
+        self.mask = mask;
+        let all = sampling.per_pixel();
+        for (grey, &count) in image.iter_mut().zip(&self.counts) {
+            *grey = ((u32::from(count) * 510 + all) / (2 * all)) as u8;
+        }
+        Ok(())
+    }
+
+    /// The depth of what each pixel's centre sees, by casting rays.
+    pub fn depth(&mut self, primitives: &[Primitive]) -> Result<DepthMap> {
+        self.build(primitives)?;
+        let (width, height) = self.size();
+        let centres = (0..height).flat_map(|y| (0..width).map(move |x| centre(x, y)));
+        let depths = centres.map(|pixel| match self.look(pixel) {
+            Some((_, hit)) => hit.distance as f32,
+            None => f32::INFINITY,
+        });
+        Ok(DepthMap { width, height, depths: depths.collect() })
+    }
+
+    /// A shaded colour picture with sensor noise, by casting rays; the same seed gives the
+    /// same picture.
+    pub fn shade(
+        &mut self,
+        primitives: &[Primitive],
+        appearance: &Appearance,
+        seed: u64,
+    ) -> Result<RgbImage> {
+        appearance.validate(self.size())?;
+        self.build(primitives)?;
+        let light = self.to_camera.transform_vector3(appearance.light).normalize();
+        let mut sensor = Sensor::new(appearance.noise_sigma, seed);
+        let (width, height) = self.size();
+        Ok(RgbImage::from_fn(width, height, |x, y| {
+            let behind = appearance.background.colour(x, y, height);
+            let corner = DVec2::new(f64::from(x), f64::from(y));
+            let samples = appearance.sampling.offsets().map(|offset| {
+                self.look(corner + offset).map_or(behind, |(direction, hit)| {
+                    let view = -direction.normalize();
+                    appearance.skin_colour(hit.normal.normalize_or_zero(), light, view)
+                })
+            });
+            let sum: DVec3 = samples.sum();
+            sensor.record(sum / f64::from(appearance.sampling.per_pixel()))
+        }))
+    }
+
+    /// What a pixel position sees: the ray, with z = 1, so that distance is depth, and the hit.
+    fn look(&self, pixel: DVec2) -> Option<(DVec3, Hit)> {
+        if !self.scene.may_show_at(pixel) {
+            return None;
+        }
+        let direction = self.intrinsics.to_normalised(pixel)?.extend(1.0);
+        Some((direction, self.scene.nearest(pixel, direction)?))
+    }
+
+    /// Traces the outlines and builds the scene.
+    fn build(&mut self, primitives: &[Primitive]) -> Result<()> {
+        self.trace(primitives)?;
+        self.scene.clear();
+        let mut start = 0;
+        for (primitive, &end) in primitives.iter().zip(&self.ends) {
+            self.scene.push(&primitive.moved(&self.to_camera), &self.corners[start..end]);
+            start = end;
+        }
+        Ok(())
+    }
+
+    /// Checks the solids and traces their outlines in pixels.
+    fn trace(&mut self, primitives: &[Primitive]) -> Result<()> {
+        self.corners.clear();
+        self.ends.clear();
+        let focal = self.intrinsics.fx.max(self.intrinsics.fy);
+        for (index, primitive) in primitives.iter().enumerate() {
+            check(primitive).map_err(|field| Error::Primitive { index, field })?;
+            self.ideal.clear();
+            outline::trace(&primitive.moved(&self.to_camera), focal, &mut self.ideal)
+                .map_err(|nearest_mm| Error::TooNear { index, nearest_mm })?;
+            self.push_outline(focal);
+            self.ends.push(self.corners.len());
+        }
+        Ok(())
+    }
+
+    /// Appends the outline held in `ideal` in pixels, bent by the lens.
+    fn push_outline(&mut self, focal: f64) {
+        if self.intrinsics.distortion.is_none() {
+            let pixels = self.ideal.iter().filter_map(|&p| self.intrinsics.to_pixel(p));
+            self.corners.extend(pixels);
+            return;
+        }
+        let Some(last) = self.ideal.last() else { return };
+        // The lens may fold over beyond the picture. Pulling what is outside a disc onto its
+        // rim leaves the inside of the outline as it is within the disc.
+        let pull = |p: DVec2| p.clamp_length_max(self.reach);
+        let mut from = *last;
+        for &to in &self.ideal {
+            let pieces = (from.distance(to) * focal / Self::STRAIGHT).ceil().clamp(1.0, 4096.0);
+            let points = (1..=pieces as u32).map(|i| from.lerp(to, f64::from(i) / pieces));
+            self.corners.extend(points.filter_map(|p| self.intrinsics.to_pixel(pull(p))));
+            from = to;
+        }
+    }
+
+    /// Fills all outlines.
+    fn fill(&mut self, sample: DVec2, mask: &mut [u8]) {
+        let mut start = 0;
+        for &end in &self.ends {
+            self.filler.fill(&self.corners[start..end], sample, mask);
+            start = end;
+        }
+    }
+
+    /// Gives the image the camera's size and clears it.
+    fn fit(&self, image: &mut GrayImage) {
+        let (width, height) = self.size();
+        if image.dimensions() == (width, height) {
+            image.fill(0);
+        } else {
+            *image = GrayImage::new(width, height);
+        }
+    }
+}
+
+fn centre(x: u32, y: u32) -> DVec2 {
+    DVec2::new(f64::from(x), f64::from(y)) + 0.5
+}
+
+/// The field of a solid that is out of its range.
+fn check(primitive: &Primitive) -> std::result::Result<(), &'static str> {
+    for ball in primitive.balls() {
+        if !ball.center.is_finite() {
+            return Err("center");
+        }
+        if !(ball.radius > 0.0 && ball.radius.is_finite()) {
+            return Err("radius");
+        }
+    }
+    match primitive {
+        Primitive::GeneralisedCylinder { thin_axis, .. } if !thin_axis.is_normalized() => {
+            Err("thin_axis")
+        }
+        Primitive::GeneralisedCylinder { flatness, .. } if !(1e-3..=1.0).contains(flatness) => {
+            Err("flatness")
+        }
+        _ => Ok(()),
+    }
+}
