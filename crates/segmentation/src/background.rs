@@ -18,7 +18,7 @@ pub struct BackgroundParams {
 
 impl Default for BackgroundParams {
     fn default() -> Self {
-        Self { noise_floor: 3.0, threshold: 5.0, shadow: 0.6 }
+        Self { noise_floor: 3.0, threshold: 5.0, shadow: 0.4 }
     }
 }
 
