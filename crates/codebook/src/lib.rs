@@ -1,1 +1,18 @@
-//! K-means with the chi-squared statistic, and soft voting into its centres
+#![doc = include_str!("../README.md")]
+
+mod chi_squared;
+mod codebook;
+mod error;
+mod kmeans;
+mod lloyd;
+mod packed;
+mod samples;
+mod seeding;
+mod voting;
+
+pub use chi_squared::chi_squared;
+pub use codebook::{Codebook, Nearest};
+pub use error::{Error, Result};
+pub use kmeans::{Fit, KMeans, Report};
+pub use samples::SUM_TOLERANCE;
+pub use voting::{Scratch, Voting};

@@ -1,0 +1,51 @@
+//! K-means per iteration, on one thread, and the voting of one silhouette's contexts.
+
+#[path = "../tests/histograms/mod.rs"]
+mod histograms;
+
+use std::time::{Duration, Instant};
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use histograms::{DIM, histograms};
+use phalanx_codebook::{KMeans, Scratch, Voting};
+
+/// One iteration is a tenth of the difference between eleven of them and one.
+fn kmeans(c: &mut Criterion) {
+    let samples = histograms(100_000, 1);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+    let fit = |max_iterations| {
+        let kmeans = KMeans { max_iterations, restarts: 1, tolerance: 0.0, ..KMeans::default() };
+        let start = Instant::now();
+        pool.install(|| kmeans.fit(&samples, DIM)).expect("a codebook");
+        start.elapsed()
+    };
+    let mut group = c.benchmark_group("K-means 100000x60, K = 90");
+    group.sample_size(10);
+    group.bench_function("one iteration", |b| {
+        b.iter_custom(|times| {
+            (0..times).map(|_| fit(11).saturating_sub(fit(1)) / 10).sum::<Duration>()
+        });
+    });
+    group.bench_function("seeding and one assignment", |b| b.iter(|| fit(1)));
+}
+
+fn voting(c: &mut Criterion) {
+    let training = histograms(5_000, 2);
+    let contexts = histograms(300, 3);
+    let mut group = c.benchmark_group("votes of 300 contexts");
+    for centres in [30, 90] {
+        let kmeans = KMeans { centres, restarts: 1, ..KMeans::default() };
+        let codebook = kmeans.fit(&training, DIM).expect("a codebook").codebook;
+        let mut scratch = Scratch::default();
+        let mut votes = vec![0.0; centres];
+        for neighbours in [3, 8, 30] {
+            group.bench_function(format!("{neighbours} of {centres} centres"), |b| {
+                let voting = Voting { neighbours };
+                b.iter(|| codebook.soft_assign(&contexts, voting, &mut scratch, &mut votes));
+            });
+        }
+    }
+}
+
+criterion_group!(benches, kmeans, voting);
+criterion_main!(benches);

@@ -1,0 +1,117 @@
+use rand_pcg::Pcg64;
+
+use crate::{Codebook, Error, Result, lloyd::Assignment, samples, seeding};
+
+/// K-means with the χ² statistic: the settings, and [`fit`](KMeans::fit).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KMeans {
+    /// The number K of centres, at least 1.
+    pub centres: usize,
+    /// How many times to begin, each time from other seeds, at least 1. The best end is kept.
+    pub restarts: usize,
+    /// How many times at most to assign the samples in each, at least 1.
+    pub max_iterations: usize,
+    /// Stop once the distortion changes by no more than this fraction, 0 to 1.
+    pub tolerance: f64,
+    /// What the random numbers come from, together with the number of the restart.
+    pub seed: u64,
+}
+
+impl Default for KMeans {
+    /// Ninety centres, as in the paper; three restarts of at most 100 iterations; to 1e-4.
+    fn default() -> Self {
+        Self { centres: 90, restarts: 3, max_iterations: 100, tolerance: 1e-4, seed: 0 }
+    }
+}
+
+/// A codebook and how it came about.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fit {
+    /// The centres, with the last distortion as their scale (but no less than 1e-6, so that
+    /// samples that *are* the centres make a usable codebook).
+    pub codebook: Codebook,
+    /// What happened.
+    pub report: Report,
+}
+
+/// How the best restart went.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Report {
+    /// Which restart it was, from 0.
+    pub restart: usize,
+    /// After each assignment, the mean χ² of the samples to their nearest centres. It falls, but
+    /// for rises of some 1e-5 near the end: the mean of the samples is not quite the minimiser of
+    /// their χ².
+    pub distortions: Vec<f64>,
+    /// Whether the distortion settled before the iterations ran out.
+    pub converged: bool,
+    /// How many times a centre that had lost all its samples was moved to the worst-served one.
+    pub reseeded: usize,
+}
+
+/// Below this scale, exp(−χ²/s) would see the rounding of χ².
+const MIN_SCALE: f64 = 1e-6;
+
+impl KMeans {
+    /// Finds centres for histograms of `dim` bins, given one after the other.
+    ///
+    /// Runs in rayon's current thread pool; the result is the same, bit for bit, in any.
+    ///
+    /// # Errors
+    /// A setting outside its range, no samples, not a whole number of them, one that is not a
+    /// histogram that sums to 1, or fewer different samples than centres.
+    pub fn fit(&self, samples: &[f32], dim: usize) -> Result<Fit> {
+        self.check()?;
+        samples::check("sample", samples, dim)?;
+        let count = samples.len() / dim;
+        if count < self.centres {
+            return Err(Error::TooFewDistinct { distinct: count, centres: self.centres });
+        }
+        let (mut centres, mut report) = self.run(samples, dim, 0)?;
+        for restart in 1..self.restarts {
+            let (other_centres, other) = self.run(samples, dim, restart)?;
+            if other.distortions.last() < report.distortions.last() {
+                (centres, report) = (other_centres, other);
+            }
+        }
+        let distortion = report.distortions.last().copied().unwrap_or_default();
+        let codebook = Codebook::from_parts(centres, dim, distortion.max(MIN_SCALE))?;
+        Ok(Fit { codebook, report })
+    }
+
+    fn check(&self) -> Result<()> {
+        let at_least_one = |name, value| match value {
+            0 => Err(Error::Parameter { name, must_be: "at least 1" }),
+            _ => Ok(()),
+        };
+        at_least_one("centres", self.centres)?;
+        at_least_one("restarts", self.restarts)?;
+        at_least_one("max_iterations", self.max_iterations)?;
+        if !(0.0..=1.0).contains(&self.tolerance) {
+            return Err(Error::Parameter { name: "tolerance", must_be: "between 0 and 1" });
+        }
+        Ok(())
+    }
+
+    fn run(&self, samples: &[f32], dim: usize, restart: usize) -> Result<(Vec<f32>, Report)> {
+        let mut rng = Pcg64::new(u128::from(self.seed), restart as u128);
+        let mut centres = seeding::seed(samples, dim, self.centres, &mut rng)?;
+        let mut distances = vec![0.0; samples.len() / dim];
+        let mut report = Report { restart, distortions: Vec::new(), converged: false, reseeded: 0 };
+        loop {
+            let assignment = Assignment::new(samples, dim, &centres, &mut distances);
+            let distortion = assignment.distortion();
+            report.converged = report
+                .distortions
+                .last()
+                .is_some_and(|last: &f64| (last - distortion).abs() <= self.tolerance * last);
+            report.distortions.push(distortion);
+            // The centres are not moved any more: the last distortion is theirs.
+            if report.converged || report.distortions.len() == self.max_iterations {
+                return Ok((centres, report));
+            }
+            report.reseeded += assignment.move_centres(samples, &mut centres, &mut distances);
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! One iteration of K-means (Lloyd, 1982): assign every sample, then move every centre.
+
+use pulp::Arch;
+use rayon::prelude::*;
+
+use crate::packed::{Comparison, Packed};
+
+/// Samples that are summed up together. Fixed, so that the rounding of the sums does not depend on
+/// the number of threads.
+pub(crate) const BLOCK: usize = 2048;
+
+/// What an assignment of the samples says of each centre.
+pub(crate) struct Assignment {
+    dim: usize,
+    /// The sum of the samples of each centre.
+    sums: Vec<f64>,
+    /// Their number.
+    counts: Vec<usize>,
+    /// The sum of their χ² to their centres.
+    total: f64,
+}
+
+impl Assignment {
+    fn empty(centres: usize, dim: usize) -> Self {
+        Self { dim, sums: vec![0.0; centres * dim], counts: vec![0; centres], total: 0.0 }
+    }
+
+    /// Assigns each sample to its nearest centre, and writes the χ² between the two.
+    pub(crate) fn new(samples: &[f32], dim: usize, centres: &[f32], distances: &mut [f32]) -> Self {
+        let packed = Packed::new(centres, dim);
+        let count = centres.len() / dim;
+        let blocks: Vec<Self> = samples
+            .par_chunks(BLOCK * dim)
+            .zip(distances.par_chunks_mut(BLOCK))
+            .map(|(samples, distances)| Self::of_block(samples, dim, &packed, count, distances))
+            .collect();
+        blocks.into_iter().fold(Self::empty(count, dim), Self::join)
+    }
+
+    fn of_block(
+        samples: &[f32],
+        dim: usize,
+        packed: &Packed,
+        count: usize,
+        distances: &mut [f32],
+    ) -> Self {
+        let arch = Arch::new();
+        let mut block = Self::empty(count, dim);
+        let mut comparison = Comparison::default();
+        for (sample, distance) in samples.chunks_exact(dim).zip(distances) {
+            let (centre, chi_squared) = packed.nearest(arch, sample, &mut comparison);
+            *distance = chi_squared;
+            block.total += f64::from(chi_squared);
+            block.counts[centre] += 1;
+            let sums = &mut block.sums[centre * dim..(centre + 1) * dim];
+            for (sum, &height) in sums.iter_mut().zip(sample) {
+                *sum += f64::from(height);
+            }
+        }
+        block
+    }
+
+    fn join(mut self, other: Self) -> Self {
+        self.total += other.total;
+        self.sums.iter_mut().zip(other.sums).for_each(|(a, b)| *a += b);
+        self.counts.iter_mut().zip(other.counts).for_each(|(a, b)| *a += b);
+        self
+    }
+
+    /// The mean χ² of the samples to their centres.
+    pub(crate) fn distortion(&self) -> f64 {
+        self.total / self.counts.iter().sum::<usize>() as f64
+    }
+
+    /// Moves each centre to the mean of its samples. One that has none moves to the sample that is
+    /// served worst (the first of equals), the next such one to the second worst, and so on.
+    ///
+    /// Returns how many had none. Uses up the distances.
+    pub(crate) fn move_centres(
+        &self,
+        samples: &[f32],
+        centres: &mut [f32],
+        distances: &mut [f32],
+    ) -> usize {
+        let mut empty = 0;
+        let means = self.sums.chunks_exact(self.dim).zip(&self.counts);
+        for (centre, (sums, &count)) in centres.chunks_exact_mut(self.dim).zip(means) {
+            if count > 0 {
+                for (height, sum) in centre.iter_mut().zip(sums) {
+                    *height = (sum / count as f64) as f32;
+                }
+            } else {
+                empty += 1;
+                let worst = worst(distances);
+                distances[worst] = 0.0;
+                centre.copy_from_slice(&samples[worst * self.dim..(worst + 1) * self.dim]);
+            }
+        }
+        empty
+    }
+}
+
+/// The index of the largest distance, the first of equals.
+fn worst(distances: &[f32]) -> usize {
+    (0..distances.len()).fold(0, |worst, i| if distances[i] > distances[worst] { i } else { worst })
+}
