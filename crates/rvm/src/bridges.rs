@@ -27,21 +27,23 @@ pub enum Stop {
 /// whole columns of A go to zero, so that all targets share the columns kept.
 ///
 /// Starting from ridge regression, the penalty ν log‖a‖² of each column a is replaced by the
-/// quadratic "bridge" that touches it at the last solution, ν‖a‖²/‖a_last‖², and the least squares
-/// problem solved again, until A stays as it is. Each step lowers the objective
+/// quadratic "bridge" that touches it at the last solution, ν‖a‖²/‖a_last‖² and a constant, and
+/// the least squares problem solved again, until A stays as it is. Each step lowers the objective
 /// ‖AF − Y‖² + ν Σ log‖a‖² over the columns kept, which is what the trace holds; it jumps where
-/// columns are dropped.
+/// columns are dropped. The weights are the iteration's own fixed point: no refit follows.
 ///
-/// The paper prints R with ν/a_scale as the rows appended to F, which would penalise ν²/a². As in
-/// its text, the penalty here is ν‖a‖²/a_scale². (A bridge that also matches the gradient of
-/// ν log‖a‖ has half that; this ν is half of such a one's.) The weights are the iteration's own
-/// fixed point: no refit follows.
+/// Here ν is m (the number of targets) times [`nu`](Self::nu): the squared error grows with m, so
+/// the balance between the two, and with it what a good value is, stays the same.
+///
+/// Two corrections to the printed text of 2006: R with ν/a_scale appended to F would penalise
+/// ν²/a², where the text (and this crate) has ν‖a‖²/a_scale²; and that bridge has the gradient of
+/// 2ν log‖a‖, not of ν log‖a‖.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bridges {
     /// Basis columns.
     pub kernel: Kernel,
-    /// ν > 0, the strength of the prior. It bounds from above how many columns can survive.
+    /// ν/m > 0, the strength of the prior for each target. It bounds how many columns survive.
     pub nu: f64,
     /// When columns are dropped.
     pub stop: Stop,
@@ -56,10 +58,10 @@ pub struct Bridges {
 impl Default for Bridges {
     fn default() -> Self {
         Self {
-            kernel: Kernel::Gaussian(Width::Scatter(0.3)),
-            nu: 0.1,
+            kernel: Kernel::Gaussian(Width::Scatter(1.0)),
+            nu: 0.03,
             stop: Stop::Threshold(1e-3),
-            lambda: 1.0,
+            lambda: 0.1,
             tolerance: 1e-6,
             max_iterations: 1000,
         }
@@ -80,14 +82,14 @@ impl Bridges {
     pub(crate) fn select(&self, design: &Design<'_>) -> Result<Selection> {
         self.check(design.size())?;
         let (gram, correlations) = (design.gram(), design.correlations());
-        let energy = linalg::inner(design.targets(), design.targets());
+        let targets = design.targets();
         let mut bridge = Bridge {
             kept: (0..design.size()).collect(),
             weights: ridge(gram.as_ref(), correlations.as_ref(), self.lambda)?,
             gram,
             correlations,
-            energy,
-            nu: self.nu,
+            energy: linalg::inner(targets, targets),
+            nu: self.nu * targets.ncols() as f64,
         };
         let mut trace = Trace { converged: false, objective: Vec::new() };
         let mut halvings = 0;
@@ -112,7 +114,8 @@ impl Bridges {
         }
         trace.converged |= bridge.kept.is_empty();
         let solved = bridge.solve()?;
-        Ok(Selection { kept: bridge.kept, nu: bridge.nu, solved, trace })
+        let nu = bridge.nu / targets.ncols() as f64;
+        Ok(Selection { kept: bridge.kept, nu, solved, trace })
     }
 
     fn check(&self, available: usize) -> Result<()> {
@@ -136,6 +139,7 @@ impl Bridges {
 pub(crate) struct Selection {
     pub(crate) kept: Vec<usize>,
     pub(crate) solved: Penalised,
+    /// ν/m as it ended.
     pub(crate) nu: f64,
     pub(crate) trace: Trace,
 }

@@ -19,7 +19,7 @@ pub struct Cascade {
     pub samples: Stop,
     /// Width of the Gaussian kernels, on the features selected.
     pub width: Width,
-    /// ν > 0 of both stages.
+    /// ν/m > 0 of both stages, as in [`Bridges::nu`].
     pub nu: f64,
 }
 
@@ -29,7 +29,7 @@ impl Default for Cascade {
         Self {
             features: stop,
             samples: stop,
-            width: Width::Scatter(0.3),
+            width: Width::Scatter(1.0),
             nu: Bridges::default().nu,
         }
     }

@@ -28,7 +28,7 @@ pub struct ForwardSelection {
 
 impl Default for ForwardSelection {
     fn default() -> Self {
-        Self { kernel: Kernel::Gaussian(Width::Scatter(0.3)), count: 10, lambda: 1e-3 }
+        Self { kernel: Kernel::Gaussian(Width::Scatter(1.0)), count: 10, lambda: 1e-3 }
     }
 }
 

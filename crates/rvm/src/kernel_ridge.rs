@@ -39,8 +39,8 @@ pub struct KernelRidge {
 
 impl Default for KernelRidge {
     fn default() -> Self {
-        let grid = (-5..=0).map(|e| 10_f64.powi(e)).collect();
-        Self { width: Width::Scatter(1.0), lambda: Lambda::LeaveOneOut(grid) }
+        let grid = (-5..=1).map(|e| 10_f64.powi(e)).collect();
+        Self { width: Width::Scatter(3.0), lambda: Lambda::LeaveOneOut(grid) }
     }
 }
 

@@ -5,8 +5,8 @@ use faer::{Mat, MatRef};
 use crate::model::{Basis, Model, ModelParts, Posterior};
 use crate::{Error, Kernel, Result, Standardiser, check, kernel, linalg};
 
-/// Most basis columns of a dense solver: one square matrix over them takes 3.2 GB.
-const MOST_COLUMNS: usize = 20_000;
+/// Most basis columns of a dense solver: one square matrix over them takes 0.8 GB.
+const MOST_COLUMNS: usize = 10_000;
 
 /// Training data, checked and standardised.
 pub(crate) struct Problem {

@@ -40,9 +40,9 @@ pub struct Tipping {
 impl Default for Tipping {
     fn default() -> Self {
         Self {
-            kernel: Kernel::Gaussian(Width::Scatter(1.0)),
+            kernel: Kernel::Gaussian(Width::Scatter(3.0)),
             noise_floor: 1e-4,
-            tolerance: 1e-3,
+            tolerance: 1e-4,
             max_iterations: 10_000,
         }
     }

@@ -1,0 +1,152 @@
+//! Input that is wrong or barely right: a named error, or a finite prediction.
+
+use faer::Mat;
+use phalanx_rvm::{
+    Bridges, Cascade, Error, ForwardSelection, Kernel, KernelRidge, Lambda, Ridge, Standardiser,
+    Stop, Tipping, Width,
+};
+use proptest::prelude::*;
+
+use crate::problems::{FITTERS, Source, few, smooth};
+
+proptest! {
+    #![proptest_config(few())]
+
+    #[test]
+    fn barely_right_data_give_finite_predictions(
+        seed in any::<u64>(),
+        k in 1..6_usize,
+        m in 1..4_usize,
+        n in 1..9_usize,
+        levels in 1..4_u32,
+        magnitude in -100..100_i32,
+    ) {
+        // Few levels: constant rows, repeated samples and exact dependence all occur.
+        let mut source = Source::new(seed);
+        let mut coarse = |rows| {
+            let unit = 10_f64.powi(magnitude);
+            let level = f64::from(levels);
+            Mat::from_fn(rows, n, |_, _| unit * (level * source.uniform()).round())
+        };
+        let (x, y) = (coarse(k), coarse(m));
+        for (name, fit) in FITTERS {
+            let model = match fit(x.as_ref(), y.as_ref()) {
+                Ok(fit) => fit.model,
+                Err(Error::Count { .. }) if name == "forward" => continue,
+                Err(error) => return Err(TestCaseError::fail(format!("{name}: {error}"))),
+            };
+            let (mean, std) = model.predict_with_std(x.as_ref())?;
+            let fine = mean.col_iter().chain(std.col_iter()).flat_map(|c| c.iter()).all(|v| v.is_finite());
+            prop_assert!(fine, "{name}");
+        }
+    }
+}
+
+#[test]
+fn wrong_matrices_are_named() {
+    let (x, y) = smooth(1, 3, 2, 10);
+    for (name, fit) in FITTERS {
+        let short = y.as_ref().subcols(0, 9);
+        let mismatch = Error::Shape { what: "columns (samples) of y", expected: 10, found: 9 };
+        assert_eq!(fit(x.as_ref(), short).unwrap_err(), mismatch, "{name}");
+        let none = fit(x.as_ref().subcols(0, 0), y.as_ref().subcols(0, 0)).unwrap_err();
+        assert_eq!(none, Error::Empty { what: "x", rows: 3, columns: 0 }, "{name}");
+        for bad in [f64::NAN, f64::INFINITY, -1e200] {
+            let mut holed = y.clone();
+            holed[(1, 4)] = bad;
+            let error = fit(x.as_ref(), holed.as_ref()).unwrap_err();
+            assert!(matches!(error, Error::BadValue { what: "y", row: 1, column: 4, .. }), "{name}");
+            let mut holed = x.clone();
+            holed[(2, 5)] = bad;
+            let error = fit(holed.as_ref(), y.as_ref()).unwrap_err();
+            assert!(matches!(error, Error::BadValue { what: "x", row: 2, column: 5, .. }), "{name}");
+            let model = fit(x.as_ref(), y.as_ref()).unwrap().model;
+            match model.predict(holed.as_ref()) {
+                Err(error) => {
+                    let named = matches!(error, Error::BadValue { row: 2, column: 5, .. });
+                    assert!(named, "{name}: {error}");
+                }
+                Ok(_) => assert!(!model.selected_features().contains(&2), "{name}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn constant_targets_are_met_exactly_and_constant_inputs_ignored() {
+    let (x, y) = smooth(2, 4, 3, 30);
+    let x = Mat::from_fn(4, 30, |i, t| if i == 1 { 0.3 } else { x[(i, t)] });
+    let y = Mat::from_fn(3, 30, |j, t| if j == 2 { 0.1 } else { y[(j, t)] });
+    for (name, fit) in FITTERS {
+        let model = fit(x.as_ref(), y.as_ref()).unwrap().model;
+        assert!(!model.selected_features().contains(&1), "{name}");
+        let (mean, std) = model.predict_with_std(x.as_ref()).unwrap();
+        assert!(mean.row(2).iter().all(|&v| v == 0.1), "{name}");
+        assert!(std.row(2).iter().all(|&v| v == 0.0), "{name}");
+        assert!(std.row(0).iter().all(|&v| v > 0.0), "{name}");
+    }
+}
+
+#[test]
+fn hyper_parameters_out_of_range_are_named() {
+    let (x, y) = smooth(3, 4, 2, 12);
+    let (x, y) = (x.as_ref(), y.as_ref());
+    let bridges = Bridges::default();
+    let forward = ForwardSelection::default();
+    let tipping = Tipping::default();
+    let name = |result: phalanx_rvm::Result<phalanx_rvm::Fit>| match result.unwrap_err() {
+        Error::Parameter { name, .. } => name,
+        other => panic!("{other}"),
+    };
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(name(Ridge { lambda: bad, ..Ridge::default() }.fit(x, y)), "lambda");
+        assert_eq!(name(Bridges { nu: bad, ..bridges }.fit(x, y)), "nu");
+        assert_eq!(name(Bridges { lambda: bad, ..bridges }.fit(x, y)), "lambda");
+        assert_eq!(name(Bridges { tolerance: bad, ..bridges }.fit(x, y)), "tolerance");
+        assert_eq!(name(Cascade { nu: bad, ..Cascade::default() }.fit(x, y)), "nu");
+        assert_eq!(name(ForwardSelection { lambda: bad, ..forward }.fit(x, y)), "lambda");
+        assert_eq!(name(Tipping { tolerance: bad, ..tipping }.fit(x, y)), "tolerance");
+        assert_eq!(name(Tipping { noise_floor: bad, ..tipping }.fit(x, y)), "noise_floor");
+        let lambda = Lambda::LeaveOneOut(vec![1.0, bad]);
+        assert_eq!(name(KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y)), "lambda");
+        let kernel = Kernel::Gaussian(Width::Scatter(bad));
+        assert_eq!(name(Bridges { kernel, ..bridges }.fit(x, y)), "c");
+    }
+    let kernel = Kernel::Gaussian(Width::Beta(0.0));
+    assert_eq!(name(Tipping { kernel, ..tipping }.fit(x, y)), "beta");
+    assert_eq!(name(Bridges { stop: Stop::Threshold(-1.0), ..bridges }.fit(x, y)), "threshold");
+    assert_eq!(name(Bridges { max_iterations: 0, ..bridges }.fit(x, y)), "max_iterations");
+    assert_eq!(name(Tipping { max_iterations: 0, ..tipping }.fit(x, y)), "max_iterations");
+    let lambda = Lambda::LeaveOneOut(Vec::new());
+    let error = KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y).unwrap_err();
+    assert!(matches!(error, Error::Empty { .. }));
+    for asked in [0, 13] {
+        let count = Error::Count { asked, available: 12 };
+        let stop = Stop::Count(asked);
+        assert_eq!(Bridges { stop, ..bridges }.fit(x, y).unwrap_err(), count);
+        assert_eq!(ForwardSelection { count: asked, ..forward }.fit(x, y).unwrap_err(), count);
+    }
+    let cascade = Cascade { features: Stop::Count(5), ..Cascade::default() };
+    assert_eq!(cascade.fit(x, y).unwrap_err(), Error::Count { asked: 5, available: 4 });
+}
+
+#[test]
+fn too_few_steps_are_reported_and_not_refused() {
+    let (x, y) = smooth(3, 4, 2, 12);
+    let (x, y) = (x.as_ref(), y.as_ref());
+    let bridges = Bridges { max_iterations: 1, ..Bridges::default() }.fit(x, y).unwrap();
+    assert!(!bridges.report.converged && bridges.report.iterations == 1);
+    let tipping = Tipping { max_iterations: 1, ..Tipping::default() }.fit(x, y).unwrap();
+    assert!(!tipping.report.converged && tipping.report.iterations == 2);
+}
+
+#[test]
+fn a_standardiser_is_undone_by_its_inverse() {
+    let (x, _) = smooth(8, 3, 1, 20);
+    let standardiser = Standardiser::fit(x.as_ref()).unwrap();
+    let back = standardiser.invert(standardiser.apply(x.as_ref()).unwrap().as_ref()).unwrap();
+    assert!((&back - &x).norm_max() < 1e-15);
+    let parts = Standardiser::from_parts(standardiser.mean().to_vec(), standardiser.scale().to_vec());
+    assert_eq!(parts.unwrap(), standardiser);
+    assert!(Standardiser::from_parts(vec![0.0], vec![-1.0]).is_err());
+}

@@ -1,0 +1,10 @@
+//! Properties that every fitter must have, and each one's difference from a slow and obvious one.
+
+mod bad_input;
+mod bridges;
+mod equivariance;
+mod forward;
+mod kernel_ridge;
+mod parts;
+mod problems;
+mod tipping;

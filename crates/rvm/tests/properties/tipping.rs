@@ -1,0 +1,65 @@
+//! Tipping's machine from outside: its evidence, its sparsity, its honesty.
+
+use faer::Mat;
+use phalanx_rvm::{Kernel, Tipping, Width};
+use proptest::prelude::*;
+
+use crate::problems::{GAUSSIAN, Source, few, smooth};
+
+proptest! {
+    #![proptest_config(few())]
+
+    #[test]
+    fn the_evidence_never_falls(seed in any::<u64>(), linear in any::<bool>()) {
+        let (x, y) = smooth(seed, 8, 3, 50);
+        let kernel = if linear { Kernel::Linear } else { GAUSSIAN };
+        let fit = Tipping { kernel, ..Tipping::default() }.fit(x.as_ref(), y.as_ref())?;
+        prop_assert!(fit.report.converged);
+        for trace in &fit.report.traces {
+            let evidence = &trace.objective;
+            let rises = evidence.is_sorted_by(|a, b| *b >= a - 1e-9 * a.abs().max(1.0));
+            prop_assert!(rises, "{evidence:?}");
+        }
+    }
+
+    #[test]
+    fn noise_free_and_repeated_samples_are_survived(seed in any::<u64>(), c in 0.01..10.0_f64) {
+        let mut source = Source::new(seed);
+        let half = source.matrix(2, 30);
+        let x = Mat::from_fn(2, 60, |i, t| half[(i, t % 30)]);
+        let y = Mat::from_fn(1, 60, |_, t| (3.0 * x[(0, t)]).sin() * x[(1, t)]);
+        let kernel = Kernel::Gaussian(Width::Scatter(c));
+        let model = Tipping { kernel, ..Tipping::default() }.fit(x.as_ref(), y.as_ref())?.model;
+        let (mean, std) = model.predict_with_std(x.as_ref())?;
+        prop_assert!(mean.col_iter().chain(std.col_iter()).all(|c| c[0].is_finite()));
+    }
+}
+
+#[test]
+fn sinc_is_learnt_from_few_vectors() {
+    let mut source = Source::new(1);
+    let x = Mat::from_fn(1, 200, |_, t| 20.0 * (t as f64 / 199.0 - 0.5));
+    let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
+    let noise: Vec<f64> = (0..200)
+        .map(|_| 0.1 * 3_f64.sqrt() * source.uniform())
+        .collect();
+    let y = Mat::from_fn(1, 200, |_, t| sinc(x[(0, t)]) + noise[t]);
+    let kernel = Kernel::Gaussian(Width::Scatter(7.0));
+    let model = Tipping { kernel, ..Tipping::default() }.fit(x.as_ref(), y.as_ref()).unwrap().model;
+    assert!(model.kept_samples().len() <= 12, "{:?}", model.kept_samples());
+    assert!((model.noise()[0] / 0.1 - 1.0).abs() < 0.15, "{:?}", model.noise());
+    let mean = model.predict(x.as_ref()).unwrap();
+    let error: f64 = (0..200).map(|t| (mean[(0, t)] - sinc(x[(0, t)])).powi(2)).sum::<f64>() / 200.0;
+    assert!(error.sqrt() < 0.04, "{}", error.sqrt());
+}
+
+#[test]
+fn inputs_that_say_nothing_are_mostly_dropped() {
+    let mut source = Source::new(9);
+    let x = source.matrix(30, 300);
+    let y = Mat::from_fn(1, 300, |_, t| 2.0 * x[(3, t)] - x[(17, t)] + 0.5 * source.uniform());
+    let fit = Tipping { kernel: Kernel::Linear, ..Tipping::default() };
+    let model = fit.fit(x.as_ref(), y.as_ref()).unwrap().model;
+    let kept = model.selected_features();
+    assert!(kept.contains(&3) && kept.contains(&17) && kept.len() <= 16, "{kept:?}");
+}
