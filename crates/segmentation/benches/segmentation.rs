@@ -17,7 +17,7 @@ fn scene(width: u32, height: u32) -> RgbImage {
             (0.36..0.64).contains(&u) && (u - 0.36) % 0.08 < 0.04 && (0.1..0.5).contains(&v);
         let forearm = (u - 0.5).abs() < 0.09 && v > 0.6;
         let speckle = (x * 7919 + y * 104_729) % 97 == 0;
-        Rgb(if (palm || fingers || forearm) != speckle { [205, 150, 125] } else { [150, 155, 165] })
+        Rgb(if (palm || fingers || forearm) ^ speckle { [205, 150, 125] } else { [150, 155, 165] })
     })
 }
 

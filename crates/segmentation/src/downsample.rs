@@ -94,42 +94,35 @@ fn area_average<const C: usize>(
     target: &mut [u8],
 ) {
     let spans: Vec<Span> = (0..width).map(|i| Span::new(i, width, window.width)).collect();
-    let total = u64::from(window.width) * u64::from(window.height);
+    let total = i64::from(window.width) * i64::from(window.height);
     let mut sums = vec![0_u32; window.width as usize * C];
-    for (y, out) in target.chunks_exact_mut(width as usize * C).enumerate() {
-        let down = Span::new(y as u32, height, window.height);
-        sum_rows::<C>(source, stride as usize, window, down, &mut sums);
+    let row = |y: usize| {
+        let start = (window.y as usize + y) * stride as usize + window.x as usize;
+        &source[start * C..][..window.width as usize * C]
+    };
+    for (out, y) in target.chunks_exact_mut(width as usize * C).zip(0..) {
+        sum_rows(row, Span::new(y, height, window.height), &mut sums);
         let (columns, _) = sums.as_chunks::<C>();
         for (out, across) in out.chunks_exact_mut(C).zip(&spans) {
             for (level, sum) in out.iter_mut().zip(sum_columns(columns, *across)) {
-                *level = ((sum + total / 2) / total) as u8;
+                // In reals because that is faster; exact, for the numbers are far below 2⁵³.
+                *level = ((sum as i64 + total / 2) as f64 / total as f64) as u8;
             }
         }
     }
 }
 
 /// The weighted sum of the rows in a span: at most 255 · window height.
-fn sum_rows<const C: usize>(
-    source: &[u8],
-    stride: usize,
-    window: CropWindow,
-    span: Span,
-    sums: &mut [u32],
-) {
-    let row = |y: usize| {
-        let start = ((window.y as usize + y) * stride + window.x as usize) * C;
-        &source[start..start + sums.len()]
-    };
+fn sum_rows<'a>(row: impl Fn(usize) -> &'a [u8], span: Span, sums: &mut [u32]) {
     let [head, whole, tail] = span.weights;
-    let rows: [&[u8]; 2] = [row(span.first), row(span.last)];
-    for ((sum, &a), &b) in sums.iter_mut().zip(rows[0]).zip(rows[1]) {
-        *sum = head * u32::from(a) + tail * u32::from(b);
-    }
+    sums.fill(0);
     for y in span.first + 1..span.last {
-        let start = ((window.y as usize + y) * stride + window.x as usize) * C;
-        for (sum, &level) in sums.iter_mut().zip(&source[start..]) {
-            *sum += whole * u32::from(level);
+        for (sum, &level) in sums.iter_mut().zip(row(y)) {
+            *sum += u32::from(level);
         }
+    }
+    for ((sum, &first), &last) in sums.iter_mut().zip(row(span.first)).zip(row(span.last)) {
+        *sum = head * u32::from(first) + whole * *sum + tail * u32::from(last);
     }
 }
 

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 
 /// Sizes and border contact of all components of pixels that `is`, and each pixel's component.
 fn flood(mask: &GrayImage, hand: bool) -> (Vec<(usize, bool)>, Vec<Option<usize>>) {
-    let (width, height) = (mask.width() as i64, mask.height() as i64);
+    let (width, height) = (i64::from(mask.width()), i64::from(mask.height()));
     let is = |x: i64, y: i64| (mask.get_pixel(x as u32, y as u32).0[0] > 127) == hand;
     let (mut regions, mut of) = (Vec::new(), vec![None; (width * height) as usize]);
     for start in 0..width * height {
