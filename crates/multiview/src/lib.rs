@@ -1,1 +1,9 @@
-//! Joins the silhouette descriptors of several cameras
+#![doc = include_str!("../README.md")]
+
+mod concatenation;
+mod error;
+mod vocabulary;
+
+pub use concatenation::{Concatenation, Scratch};
+pub use error::{Error, Result};
+pub use vocabulary::Vocabulary;

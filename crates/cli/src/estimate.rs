@@ -1,0 +1,124 @@
+//! `phalanx estimate`.
+
+use std::path::PathBuf;
+
+use anyhow::{Result, bail};
+use clap::Args;
+use image::{DynamicImage, RgbImage, imageops};
+use phalanx::{
+    Estimate, Estimator, Picture, Segmenter, Workspace, draw_overlay, draw_silhouette,
+    working_window,
+};
+use phalanx_segmentation::{Silhouette, SkinModel};
+
+use crate::input::{self, Crop};
+use crate::output;
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The model, as `cargo xtask train` writes it.
+    #[arg(long, value_name = "FILE")]
+    model: PathBuf,
+    /// One picture per camera, in the order in which the model was trained.
+    #[arg(required = true, value_name = "IMAGE")]
+    images: Vec<PathBuf>,
+    /// The pictures are silhouettes: brighter than 127 is hand.
+    #[arg(long)]
+    mask: bool,
+    /// Look at this window of every picture only, px.
+    #[arg(long, value_name = "X,Y,W,H")]
+    crop: Option<Crop>,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+    /// Draw what was seen and estimated over the pictures, side by side.
+    #[arg(long, value_name = "FILE.png")]
+    overlay: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    if let Some(path) = arguments.overlay.as_ref().filter(|path| !is_png(path)) {
+        bail!("{}: the overlay is written as PNG; name it so", path.display());
+    }
+    let estimator = input::model(&arguments.model)?;
+    let pictures = arguments.images.iter().map(|path| input::picture(path, arguments.crop));
+    let pictures = pictures.collect::<Result<Vec<_>>>()?;
+
+    let mut workspace = Workspace::default();
+    let estimate = if arguments.mask {
+        of_masks(&estimator, &pictures, &mut workspace)?
+    } else {
+        of_photographs(&estimator, &pictures, &mut workspace)?
+    };
+    if let Some(path) = &arguments.overlay {
+        output::write_png(path, &overlay(&estimator, &estimate, &pictures, &workspace)?)?;
+    }
+    for doubt in output::doubts(&estimator, &estimate) {
+        eprintln!("phalanx: {doubt}");
+    }
+    if arguments.json {
+        println!("{}", output::json(&estimator, &estimate)?);
+    } else {
+        print!("{}", output::text(&estimate));
+    }
+    Ok(())
+}
+
+fn is_png(path: &std::path::Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
+}
+
+fn of_masks(
+    estimator: &Estimator,
+    pictures: &[DynamicImage],
+    workspace: &mut Workspace,
+) -> Result<Estimate> {
+    let masks: Vec<_> = pictures.iter().map(DynamicImage::to_luma8).collect();
+    let masks: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
+    Ok(estimator.estimate(&masks, workspace)?)
+}
+
+fn of_photographs(
+    estimator: &Estimator,
+    pictures: &[DynamicImage],
+    workspace: &mut Workspace,
+) -> Result<Estimate> {
+    let skin = Segmenter::Skin(SkinModel::builtin());
+    let photographs: Vec<_> = pictures.iter().map(DynamicImage::to_rgb8).collect();
+    let photographs: Vec<Picture<'_>> =
+        photographs.iter().map(|image| Picture::Photograph(image, &skin)).collect();
+    Ok(estimator.estimate(&photographs, workspace)?)
+}
+
+/// The pictures side by side with what was seen and estimated.
+fn overlay(
+    estimator: &Estimator,
+    estimate: &Estimate,
+    pictures: &[DynamicImage],
+    workspace: &Workspace,
+) -> Result<RgbImage> {
+    let mut panels = Vec::new();
+    for (view, camera) in estimator.rig().cameras.iter().enumerate() {
+        let rest = estimator.rig().volume.rest_frame();
+        let drawn = draw_silhouette(camera, estimator.hand(), &estimate.pose, &rest)?;
+        let estimated = Silhouette::from_mask(&drawn).ok();
+        let mut canvas = pictures[view].to_rgb8();
+        let window = working_window(canvas.dimensions())?;
+        let observed = &workspace.silhouettes()[view];
+        draw_overlay(&mut canvas, window, observed, estimated.as_ref());
+        panels.push(canvas);
+    }
+    Ok(side_by_side(&panels))
+}
+
+fn side_by_side(panels: &[RgbImage]) -> RgbImage {
+    let width = panels.iter().map(RgbImage::width).sum();
+    let height = panels.iter().map(RgbImage::height).max().unwrap_or_default();
+    let mut all = RgbImage::new(width, height);
+    let mut x = 0;
+    for panel in panels {
+        imageops::replace(&mut all, panel, x, 0);
+        x += i64::from(panel.width());
+    }
+    all
+}

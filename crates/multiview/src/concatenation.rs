@@ -1,0 +1,102 @@
+//! Intermediate fusion: each view's histogram, joined.
+
+use phalanx_codebook::{Codebook, Voting};
+use serde::{Deserialize, Serialize};
+
+use crate::{Error, Result};
+
+/// The fitted codebooks of the views; joins the views' histograms into one vector x (§ 2 of the
+/// paper: "combine the information at an intermediate level").
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Parts", into = "Parts")]
+pub struct Concatenation {
+    codebooks: Vec<Codebook>,
+    voting: Voting,
+}
+
+/// The stored form of a [`Concatenation`].
+#[derive(Serialize, Deserialize)]
+struct Parts {
+    codebooks: Vec<Codebook>,
+    voting: Voting,
+}
+
+impl TryFrom<Parts> for Concatenation {
+    type Error = Error;
+
+    fn try_from(parts: Parts) -> Result<Self> {
+        Self::from_parts(parts.codebooks, parts.voting)
+    }
+}
+
+impl From<Concatenation> for Parts {
+    fn from(joined: Concatenation) -> Self {
+        Self { codebooks: joined.codebooks, voting: joined.voting }
+    }
+}
+
+/// Memory that describing one sample after another uses again.
+#[derive(Debug, Default)]
+pub struct Scratch(phalanx_codebook::Scratch);
+
+impl Concatenation {
+    /// Joins codebooks, one per view, in the order of the views.
+    ///
+    /// # Errors
+    /// No view.
+    pub fn from_parts(codebooks: Vec<Codebook>, voting: Voting) -> Result<Self> {
+        if codebooks.is_empty() {
+            return Err(Error::NoViews);
+        }
+        Ok(Self { codebooks, voting })
+    }
+
+    /// The codebooks, one per view.
+    pub fn codebooks(&self) -> &[Codebook] {
+        &self.codebooks
+    }
+
+    /// How shape contexts vote.
+    pub fn voting(&self) -> Voting {
+        self.voting
+    }
+
+    /// The number of views.
+    pub fn views(&self) -> usize {
+        self.codebooks.len()
+    }
+
+    /// The length of the joined vector: the centres of all views.
+    pub fn dim(&self) -> usize {
+        self.codebooks.iter().map(Codebook::len).sum()
+    }
+
+    /// Joins the histograms of one sample's views into `x`: each view's part is non-negative
+    /// and sums to 1. `contexts[v]` holds the shape contexts of view v one after the other.
+    ///
+    /// # Errors
+    /// Another number of views, an `x` of another length, or what a codebook says of its
+    /// contexts.
+    pub fn describe<C: AsRef<[f32]>>(
+        &self,
+        contexts: &[C],
+        scratch: &mut Scratch,
+        x: &mut [f64],
+    ) -> Result<()> {
+        if contexts.len() != self.views() {
+            return Err(Error::ViewCount { expected: self.views(), found: contexts.len() });
+        }
+        if x.len() != self.dim() {
+            return Err(Error::OutputLength { expected: self.dim(), found: x.len() });
+        }
+        let mut rest = x;
+        for (view, (codebook, contexts)) in self.codebooks.iter().zip(contexts).enumerate() {
+            let part;
+            (part, rest) = rest.split_at_mut(codebook.len());
+            codebook
+                .soft_assign(contexts.as_ref(), self.voting, &mut scratch.0, part)
+                .map_err(|source| Error::View { view, source })?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,45 @@
+//! What can be wrong with views and their codebooks.
+
+/// An error of this crate.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A codebook could not be fitted or applied.
+    #[error("view {view}: {source}")]
+    View {
+        /// The view, from 0.
+        view: usize,
+        /// The reason.
+        source: phalanx_codebook::Error,
+    },
+    /// There is no view at all.
+    #[error("there is no view")]
+    NoViews,
+    /// Not as many views as there are codebooks.
+    #[error("{found} views where there are codebooks for {expected}")]
+    ViewCount {
+        /// Views expected.
+        expected: usize,
+        /// Views given.
+        found: usize,
+    },
+    /// An output of the wrong length.
+    #[error("the output has {found} numbers where the descriptor has {expected}")]
+    OutputLength {
+        /// Length of the joined descriptor.
+        expected: usize,
+        /// Length given.
+        found: usize,
+    },
+    /// The views cannot share the centres evenly.
+    #[error("{centres} centres cannot be shared evenly by {views} views")]
+    UnevenShare {
+        /// Centres of all views together.
+        centres: usize,
+        /// Views.
+        views: usize,
+    },
+}
+
+/// A result of this crate.
+pub type Result<T> = std::result::Result<T, Error>;

@@ -1,0 +1,116 @@
+//! From one camera's picture to its shape contexts (§ 2 of the paper).
+
+use image::GrayImage;
+use phalanx_camera::{Camera, Intrinsics};
+use phalanx_segmentation::{
+    Cleanup, CropWindow, Silhouette, clean_into, downsample, downsample_mask,
+};
+use phalanx_shape_context::{Chain, Descriptors, Orientation, ShapeContexts};
+use serde::{Deserialize, Serialize};
+
+use crate::{Error, Picture, Result};
+
+/// The size at which pictures are described, width and height: the paper's 90 × 120 pixels.
+pub const WORKING_SIZE: (u32, u32) = (120, 90);
+
+/// Which way shape contexts are turned; the rules of
+/// [`Orientation`], without what a contour adds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum OrientationRule {
+    /// The image's axes.
+    ImageAxes,
+    /// The contour's tangent at each point.
+    Tangent,
+    /// The line to the contour's centroid at each point.
+    Centroid,
+    /// The contour's principal axis.
+    PrincipalAxis,
+    /// From the forearm's end to the hand's tip: the paper's rule.
+    #[default]
+    HandAxis,
+}
+
+impl OrientationRule {
+    fn of(self, silhouette: &Silhouette) -> Orientation {
+        match self {
+            Self::ImageAxes => Orientation::ImageAxes,
+            Self::Tangent if silhouette.contour.is_closed() => {
+                Orientation::Tangent { chain: Chain::Closed }
+            }
+            Self::Tangent => Orientation::Tangent { chain: Chain::Open },
+            Self::Centroid => Orientation::Centroid,
+            Self::PrincipalAxis => Orientation::PrincipalAxis,
+            Self::HandAxis => Orientation::HandAxis { forearm_end: silhouette.forearm.end },
+        }
+    }
+}
+
+/// The camera as it sees pictures brought to [`WORKING_SIZE`]: the centred window of the right
+/// shape, scaled.
+///
+/// # Errors
+/// What the camera says of the window.
+pub fn working_camera(camera: &Camera) -> Result<Camera> {
+    let Intrinsics { width, height, .. } = camera.intrinsics;
+    let window = CropWindow::centred((width, height), WORKING_SIZE)
+        .map_err(|source| Error::Silhouette { camera: camera.name.clone(), source })?;
+    let cropped = camera.intrinsics.cropped(window.x, window.y, window.width, window.height)?;
+    Ok(camera.with_intrinsics(cropped.resized(WORKING_SIZE.0, WORKING_SIZE.1)))
+}
+
+/// Describes one picture after another in the same memory.
+#[derive(Debug, Clone, Default)]
+pub struct Describer {
+    cleaning: phalanx_segmentation::Workspace,
+    cleaned: GrayImage,
+    contexts: ShapeContexts,
+}
+
+impl Describer {
+    /// The silhouette of a picture: brought to [`WORKING_SIZE`] by its centred window of that
+    /// shape, segmented, cleaned, traced. After an error its content means nothing.
+    ///
+    /// # Errors
+    /// No hand, no contour, no forearm: as [`phalanx_segmentation::Error`] names them.
+    pub fn silhouette(
+        &mut self,
+        picture: Picture<'_>,
+        silhouette: &mut Silhouette,
+    ) -> Result<(), phalanx_segmentation::Error> {
+        let (width, height) = WORKING_SIZE;
+        let mask = match picture {
+            Picture::Mask(mask) => downsample_mask(mask, width, height)?,
+            Picture::Photograph(image, segmenter) => {
+                segmenter.segment(&downsample(image, width, height)?)?
+            }
+        };
+        self.silhouette_of_mask(&mask, silhouette)
+    }
+
+    /// The silhouette of a raw mask of any size, as it is: cleaned and traced. After an error its
+    /// content means nothing.
+    ///
+    /// # Errors
+    /// No hand, no contour, no forearm: as [`phalanx_segmentation::Error`] names them.
+    pub fn silhouette_of_mask(
+        &mut self,
+        mask: &GrayImage,
+        silhouette: &mut Silhouette,
+    ) -> Result<(), phalanx_segmentation::Error> {
+        clean_into(mask, &Cleanup::default(), &mut self.cleaning, &mut self.cleaned)?;
+        silhouette.extract_into(&self.cleaned, &mut self.cleaning)
+    }
+
+    /// The shape contexts of a silhouette's contour points.
+    ///
+    /// # Errors
+    /// A contour that is too short, or whose orientation is undefined.
+    pub fn contexts(
+        &mut self,
+        silhouette: &Silhouette,
+        rule: OrientationRule,
+    ) -> Result<Descriptors<'_>, phalanx_shape_context::Error> {
+        self.contexts.compute(&silhouette.contour.points, rule.of(silhouette))
+    }
+}

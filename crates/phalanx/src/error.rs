@@ -1,0 +1,115 @@
+//! What can be wrong with training, models and pictures.
+
+/// An error of this crate.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// No silhouette could be had from a camera's picture.
+    #[error("camera '{camera}': {source}")]
+    Silhouette {
+        /// The camera's name.
+        camera: String,
+        /// The reason.
+        source: phalanx_segmentation::Error,
+    },
+    /// A silhouette has no shape contexts.
+    #[error("camera '{camera}': {source}")]
+    ShapeContext {
+        /// The camera's name.
+        camera: String,
+        /// The reason.
+        source: phalanx_shape_context::Error,
+    },
+    /// A training pose that some camera cannot see whole enough to be described.
+    #[error("training pose {pose}: {source}")]
+    TrainingPose {
+        /// Its position in the list of poses, from 0.
+        pose: usize,
+        /// The reason.
+        source: Box<Error>,
+    },
+    /// A hand could not be drawn.
+    #[error("camera '{camera}': {source}")]
+    Render {
+        /// The camera's name.
+        camera: String,
+        /// The reason.
+        source: phalanx_render::Error,
+    },
+    /// The rig is unusable.
+    #[error(transparent)]
+    Rig(#[from] phalanx_camera::Error),
+    /// The hand is unusable.
+    #[error(transparent)]
+    Hand(#[from] phalanx_hand::Error),
+    /// The views could not be joined.
+    #[error(transparent)]
+    Views(#[from] phalanx_multiview::Error),
+    /// The regressor could not be fitted or does not fit the descriptor.
+    #[error(transparent)]
+    Regression(#[from] phalanx_rvm::Error),
+    /// No pose to learn from, or only one.
+    #[error("{found} training poses are too few: at least 2 are needed")]
+    TooFewPoses {
+        /// How many there are.
+        found: usize,
+    },
+    /// Not one picture per camera.
+    #[error("{found} pictures for {} cameras ({})", cameras.len(), cameras.join(", "))]
+    PictureCount {
+        /// The model's cameras in the order in which pictures are expected.
+        cameras: Vec<String>,
+        /// How many pictures were given.
+        found: usize,
+    },
+    /// A picture whose shape is not that of its camera's image.
+    #[error(
+        "camera '{camera}': the picture is {}×{}, which is not the shape of the camera's {}×{}; \
+         crop it to that shape",
+        found.0, found.1, expected.0, expected.1
+    )]
+    PictureShape {
+        /// The camera's name.
+        camera: String,
+        /// Width and height of the picture, px.
+        found: (u32, u32),
+        /// Width and height of the camera's image, px.
+        expected: (u32, u32),
+    },
+    /// The bytes are not a model of this project.
+    #[error("not a phalanx model: the file does not begin with its mark")]
+    ForeignModel,
+    /// A model of a format that this version does not read.
+    #[error("the model has format {found}; this version reads format {known}")]
+    ModelVersion {
+        /// The file's format.
+        found: u32,
+        /// The format that is read.
+        known: u32,
+    },
+    /// A model file that is shorter or longer than its header says.
+    #[error("the model file is truncated or has been added to: {found} bytes where its header says {expected}")]
+    ModelLength {
+        /// Bytes announced.
+        expected: u64,
+        /// Bytes present.
+        found: u64,
+    },
+    /// A model file whose checksum does not match.
+    #[error("the model file is corrupt: checksum {found:08x} where its header says {expected:08x}")]
+    ModelChecksum {
+        /// Checksum announced.
+        expected: u32,
+        /// Checksum computed.
+        found: u32,
+    },
+    /// A model whose content cannot be decoded or contradicts itself.
+    #[error("the model file is corrupt: {reason}")]
+    ModelContent {
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+/// A result of this crate.
+pub type Result<T, E = Error> = std::result::Result<T, E>;

@@ -1,0 +1,186 @@
+//! The fitted estimator: from one picture per camera to a pose.
+
+use glam::DVec3;
+use phalanx_camera::Rig;
+use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
+use phalanx_multiview::Concatenation;
+use phalanx_rvm::Model;
+use phalanx_segmentation::{Forearm, Silhouette};
+
+use crate::{Describer, Error, OrientationRule, Picture, Result};
+
+/// A pose estimator for one rig and one hand; see [`Training`](crate::Training) for how to get
+/// one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimator {
+    rig: Rig,
+    hand: HandShape,
+    orientation: OrientationRule,
+    views: Concatenation,
+    model: Model,
+}
+
+/// What is known of a hand after looking at it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// The pose, radians and millimetres.
+    pub pose: Pose,
+    /// Predictive standard deviation of each number of the pose, in its unit.
+    pub std: [f64; Dof::COUNT],
+    /// The 21 joints in the world, mm.
+    pub joints: [DVec3; JOINTS],
+    /// Where each view's forearm was found, and by what evidence, at the working size.
+    pub forearms: Vec<Forearm>,
+}
+
+/// Memory that one estimate after another uses again.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    describer: Describer,
+    silhouettes: Vec<Silhouette>,
+    contexts: Vec<Vec<f32>>,
+    views: phalanx_multiview::Scratch,
+    x: Vec<f64>,
+    regression: phalanx_rvm::Scratch,
+}
+
+impl Workspace {
+    /// The silhouettes of the last estimate from pictures, in the order of the cameras.
+    pub fn silhouettes(&self) -> &[Silhouette] {
+        &self.silhouettes
+    }
+}
+
+impl Estimator {
+    /// Puts an estimator together.
+    ///
+    /// # Errors
+    /// Parts that do not fit each other: cameras and codebooks, descriptor and regressor.
+    pub fn from_parts(
+        rig: Rig,
+        hand: HandShape,
+        orientation: OrientationRule,
+        views: Concatenation,
+        model: Model,
+    ) -> Result<Self> {
+        rig.validate()?;
+        hand.validate()?;
+        let mismatch = |what: &str, found: usize, expected: usize| Error::ModelContent {
+            reason: format!("{found} {what} where there should be {expected}"),
+        };
+        if views.views() != rig.cameras.len() {
+            return Err(mismatch("codebooks", views.views(), rig.cameras.len()));
+        }
+        if model.inputs() != views.dim() {
+            return Err(mismatch("regressor inputs", model.inputs(), views.dim()));
+        }
+        if model.outputs() != Dof::COUNT {
+            return Err(mismatch("regressor outputs", model.outputs(), Dof::COUNT));
+        }
+        Ok(Self { rig, hand, orientation, views, model })
+    }
+
+    /// The cameras and the volume it was learnt for.
+    pub fn rig(&self) -> &Rig {
+        &self.rig
+    }
+
+    /// The hand it was learnt for.
+    pub fn hand(&self) -> &HandShape {
+        &self.hand
+    }
+
+    /// Which way its shape contexts are turned.
+    pub fn orientation(&self) -> OrientationRule {
+        self.orientation
+    }
+
+    /// Its codebooks.
+    pub fn views(&self) -> &Concatenation {
+        &self.views
+    }
+
+    /// Its regressor.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Estimates the pose from one picture per camera, in the order of the rig's cameras.
+    ///
+    /// # Errors
+    /// Another number of pictures, a picture of another shape than its camera's image, or no
+    /// hand in one.
+    pub fn estimate(&self, pictures: &[Picture<'_>], workspace: &mut Workspace) -> Result<Estimate> {
+        self.check_count(pictures.len())?;
+        let mut silhouettes = std::mem::take(&mut workspace.silhouettes);
+        silhouettes.resize_with(pictures.len(), Silhouette::default);
+        for ((view, &picture), silhouette) in pictures.iter().enumerate().zip(&mut silhouettes) {
+            self.check_shape(view, picture.size())?;
+            workspace
+                .describer
+                .silhouette(picture, silhouette)
+                .map_err(|source| Error::Silhouette { camera: self.camera(view), source })?;
+        }
+        let estimate = self.estimate_silhouettes(&silhouettes, workspace);
+        workspace.silhouettes = silhouettes;
+        estimate
+    }
+
+    /// Estimates the pose from one silhouette per camera, of any size, in the order of the rig's
+    /// cameras.
+    ///
+    /// # Errors
+    /// Another number of silhouettes, or one that cannot be described.
+    pub fn estimate_silhouettes(
+        &self,
+        silhouettes: &[Silhouette],
+        workspace: &mut Workspace,
+    ) -> Result<Estimate> {
+        self.check_count(silhouettes.len())?;
+        workspace.contexts.resize_with(silhouettes.len(), Vec::new);
+        for (view, silhouette) in silhouettes.iter().enumerate() {
+            let contexts = workspace
+                .describer
+                .contexts(silhouette, self.orientation)
+                .map_err(|source| Error::ShapeContext { camera: self.camera(view), source })?;
+            let kept = &mut workspace.contexts[view];
+            kept.clear();
+            kept.extend_from_slice(contexts.values());
+        }
+        let (pose, std) = self.regress(workspace)?;
+        let joints = self.hand.pose(&pose, &self.rig.volume.rest_frame()).joints;
+        let forearms = silhouettes.iter().map(|silhouette| silhouette.forearm).collect();
+        Ok(Estimate { pose, std, joints, forearms })
+    }
+
+    fn camera(&self, view: usize) -> String {
+        self.rig.cameras[view].name.clone()
+    }
+
+    fn check_count(&self, found: usize) -> Result<()> {
+        let cameras = self.rig.cameras.len();
+        if found == cameras {
+            return Ok(());
+        }
+        Err(Error::PictureCount { cameras: (0..cameras).map(|v| self.camera(v)).collect(), found })
+    }
+
+    /// The picture must be a scaled copy of the camera's image, to within a pixel.
+    fn check_shape(&self, view: usize, found: (u32, u32)) -> Result<()> {
+        let intrinsics = &self.rig.cameras[view].intrinsics;
+        let expected = (intrinsics.width, intrinsics.height);
+        let height = f64::from(found.0) * f64::from(expected.1) / f64::from(expected.0);
+        if (height - f64::from(found.1)).abs() <= 1.0 {
+            return Ok(());
+        }
+        Err(Error::PictureShape { camera: self.camera(view), found, expected })
+    }
+
+    fn regress(&self, workspace: &mut Workspace) -> Result<(Pose, [f64; Dof::COUNT])> {
+        workspace.x.resize(self.views.dim(), 0.0);
+        self.views.describe(&workspace.contexts, &mut workspace.views, &mut workspace.x)?;
+        let (mut pose, mut std) = (Pose::REST, [0.0; Dof::COUNT]);
+        self.model.predict_into(&workspace.x, &mut workspace.regression, &mut pose.0, &mut std)?;
+        Ok((pose, std))
+    }
+}

@@ -1,0 +1,18 @@
+//! How long work tells its caller how far it is.
+
+/// Receives the progress of long work, from any thread.
+pub trait Progress: Sync {
+    /// A stage of `items` steps begins.
+    fn begin(&self, stage: &str, items: usize);
+    /// One more step of the stage is done.
+    fn step(&self);
+}
+
+/// Receives progress and tells nobody.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn begin(&self, _stage: &str, _items: usize) {}
+    fn step(&self) {}
+}

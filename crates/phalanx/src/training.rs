@@ -1,0 +1,125 @@
+//! Learning an estimator for a rig and a hand.
+
+use faer::Mat;
+use phalanx_camera::Rig;
+use phalanx_hand::{Dof, HandShape, Pose};
+use phalanx_multiview::{Concatenation, Scratch, Vocabulary};
+use phalanx_rvm::{Bridges, Cascade, Fit, ForwardSelection, KernelRidge, Ridge, Tipping};
+use rayon::prelude::*;
+
+use crate::{Error, Estimator, OrientationRule, PoseContexts, Progress, Result, describe_poses};
+
+/// How an estimator is learnt. The default is the paper's recipe with dense kernel regression.
+#[derive(Debug, Clone)]
+pub struct Training {
+    /// Which way shape contexts are turned.
+    pub orientation: OrientationRule,
+    /// The codebooks.
+    pub vocabulary: Vocabulary,
+    /// The regressor.
+    pub regressor: Regressor,
+}
+
+impl Default for Training {
+    fn default() -> Self {
+        Self {
+            orientation: OrientationRule::default(),
+            vocabulary: Vocabulary::default(),
+            regressor: Regressor::KernelRidge(KernelRidge::default()),
+        }
+    }
+}
+
+/// A regressor from descriptors to poses.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub enum Regressor {
+    /// Ridge regression.
+    Ridge(Ridge),
+    /// Agarwal and Triggs' column-wise quadratic bridges: the paper's "lin" and "gauss".
+    Bridges(Bridges),
+    /// Features selected linearly, then samples by Gaussian kernels: the paper's "both".
+    Cascade(Cascade),
+    /// Orthogonal forward selection over all outputs.
+    Forward(ForwardSelection),
+    /// Tipping's relevance vector machine, one per output.
+    Tipping(Tipping),
+    /// Dense kernel ridge regression.
+    KernelRidge(KernelRidge),
+}
+
+impl Regressor {
+    /// Fits targets `y`, m × I, to descriptors `x`, K × I; samples are columns.
+    ///
+    /// # Errors
+    /// What the regressor says of its parameters or its data.
+    pub fn fit(&self, x: &Mat<f64>, y: &Mat<f64>) -> Result<Fit> {
+        let (x, y) = (x.as_ref(), y.as_ref());
+        let fit = match self {
+            Self::Ridge(fitter) => fitter.fit(x, y),
+            Self::Bridges(fitter) => fitter.fit(x, y),
+            Self::Cascade(fitter) => fitter.fit(x, y),
+            Self::Forward(fitter) => fitter.fit(x, y),
+            Self::Tipping(fitter) => fitter.fit(x, y),
+            Self::KernelRidge(fitter) => fitter.fit(x, y),
+        };
+        Ok(fit?)
+    }
+}
+
+impl Training {
+    /// Draws `poses` of the hand through the rig, describes them and learns an estimator. The
+    /// same input gives the same estimator at any number of threads.
+    ///
+    /// # Errors
+    /// A rig, hand or pose that cannot be drawn or described, or what the stages report.
+    pub fn run(
+        &self,
+        rig: &Rig,
+        hand: &HandShape,
+        poses: &[Pose],
+        progress: &dyn Progress,
+    ) -> Result<Estimator> {
+        rig.validate()?;
+        hand.validate()?;
+        if poses.len() < 2 {
+            return Err(Error::TooFewPoses { found: poses.len() });
+        }
+        let contexts = describe_poses(rig, hand, poses, self.orientation, progress)?;
+        progress.begin("cluster shape contexts", 1);
+        let views = self.vocabulary.fit(&contexts, phalanx_shape_context::BINS)?;
+        progress.step();
+        let x = descriptors(&views, &contexts)?;
+        progress.begin("fit the regressor", 1);
+        let fit = self.regressor.fit(&x, &targets(poses))?;
+        progress.step();
+        Estimator::from_parts(rig.clone(), hand.clone(), self.orientation, views, fit.model)
+    }
+}
+
+/// The joined descriptors of all samples, K × I.
+///
+/// # Errors
+/// What the codebooks say of the contexts.
+pub fn descriptors(views: &Concatenation, contexts: &[PoseContexts]) -> Result<Mat<f64>> {
+    let mut x = Mat::zeros(views.dim(), contexts.len());
+    let columns: Vec<Result<Vec<f64>>> = contexts
+        .par_iter()
+        .map_init(Scratch::default, |scratch, sample| {
+            let mut column = vec![0.0; views.dim()];
+            views.describe(sample, scratch, &mut column)?;
+            Ok(column)
+        })
+        .collect();
+    for (i, column) in columns.into_iter().enumerate() {
+        for (k, value) in column?.into_iter().enumerate() {
+            x[(k, i)] = value;
+        }
+    }
+    Ok(x)
+}
+
+/// The poses as targets, 28 × I.
+pub fn targets(poses: &[Pose]) -> Mat<f64> {
+    Mat::from_fn(Dof::COUNT, poses.len(), |dof, i| poses[i].0[dof])
+}

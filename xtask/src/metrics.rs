@@ -1,0 +1,59 @@
+//! Errors of estimates, as the paper reports them.
+
+use faer::MatRef;
+use phalanx_hand::Dof;
+
+/// Absolute errors over test samples, degrees, dof by dof.
+#[derive(Clone)]
+pub(crate) struct AngleErrors {
+    dofs: Vec<Dof>,
+    /// Mean over the test samples, one per dof.
+    mean: Vec<f64>,
+    /// Standard deviation over the test samples, one per dof.
+    std: Vec<f64>,
+}
+
+impl AngleErrors {
+    /// Compares estimates with the truth, both 28 × I in radians, over the angles `dofs`.
+    pub(crate) fn new(estimates: MatRef<'_, f64>, truth: MatRef<'_, f64>, dofs: &[Dof]) -> Self {
+        let samples = truth.ncols() as f64;
+        let (mut mean, mut std) = (Vec::new(), Vec::new());
+        for dof in dofs {
+            let row = dof.index();
+            let errors: Vec<f64> = (0..truth.ncols())
+                .map(|i| (estimates[(row, i)] - truth[(row, i)]).abs().to_degrees())
+                .collect();
+            let average = errors.iter().sum::<f64>() / samples;
+            let variance = errors.iter().map(|e| (e - average).powi(2)).sum::<f64>() / samples;
+            mean.push(average);
+            std.push(variance.sqrt());
+        }
+        Self { dofs: dofs.to_vec(), mean, std }
+    }
+
+    /// The mean of several runs over the same dofs.
+    pub(crate) fn average(runs: &[Self]) -> Self {
+        let mean_of = |field: fn(&Self) -> &[f64], dof: usize| {
+            runs.iter().map(|run| field(run)[dof]).sum::<f64>() / runs.len() as f64
+        };
+        let dofs = runs[0].dofs.clone();
+        let each = |field: fn(&Self) -> &[f64]| (0..dofs.len()).map(|d| mean_of(field, d)).collect();
+        Self { mean: each(|run| &run.mean), std: each(|run| &run.std), dofs }
+    }
+
+    /// Mean absolute error over samples and dofs, degrees.
+    pub(crate) fn mae(&self) -> f64 {
+        self.mean.iter().sum::<f64>() / self.mean.len() as f64
+    }
+
+    /// Mean over dofs of the standard deviation of the absolute error, degrees.
+    pub(crate) fn std(&self) -> f64 {
+        self.std.iter().sum::<f64>() / self.std.len() as f64
+    }
+
+    /// The dof with the largest mean error, and that error in degrees.
+    pub(crate) fn worst(&self) -> (Dof, f64) {
+        let pairs = self.dofs.iter().copied().zip(self.mean.iter().copied());
+        pairs.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a data set has active angles")
+    }
+}

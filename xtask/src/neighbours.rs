@@ -1,0 +1,28 @@
+//! The mean of the nearest neighbours: the simplest regressor to compare with.
+
+use faer::{Mat, MatRef};
+use rayon::prelude::*;
+
+/// For each column of `queries`, the mean of the targets of the `count` training columns that
+/// are nearest in Euclidean distance; of equal ones the first.
+pub(crate) fn nearest_mean(
+    train: MatRef<'_, f64>,
+    targets: MatRef<'_, f64>,
+    queries: MatRef<'_, f64>,
+    count: usize,
+) -> Mat<f64> {
+    let distance = |a: usize, b: usize| -> f64 {
+        (0..train.nrows()).map(|k| (train[(k, a)] - queries[(k, b)]).powi(2)).sum()
+    };
+    let nearest = |query: usize| -> Vec<usize> {
+        let mut order: Vec<(f64, usize)> =
+            (0..train.ncols()).map(|i| (distance(i, query), i)).collect();
+        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        order.into_iter().take(count).map(|(_, i)| i).collect()
+    };
+    let chosen: Vec<Vec<usize>> = (0..queries.ncols()).into_par_iter().map(nearest).collect();
+    Mat::from_fn(targets.nrows(), queries.ncols(), |row, query| {
+        let chosen = &chosen[query];
+        chosen.iter().map(|&i| targets[(row, i)]).sum::<f64>() / chosen.len() as f64
+    })
+}

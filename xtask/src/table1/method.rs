@@ -1,0 +1,91 @@
+//! The methods that the table compares.
+
+use phalanx::Regressor;
+use phalanx_rvm::{Bridges, Cascade, ForwardSelection, Kernel, KernelRidge, Stop, Tipping};
+
+/// How many columns each of the paper's methods keeps.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Counts {
+    pub(crate) lin_features: usize,
+    pub(crate) gauss_samples: usize,
+    pub(crate) both_features: usize,
+    pub(crate) both_samples: usize,
+}
+
+impl Counts {
+    /// The counts of the paper's Table 1 (and Figs. 9–11 where it leaves a cell empty); an
+    /// outside trajectory takes those of `complex`.
+    pub(crate) fn paper(views: usize, data_set: &str) -> Self {
+        let (lin_features, gauss_samples, both_features, both_samples) = match (views, data_set) {
+            (1, "open-close") => (3, 10, 13, 29),
+            (_, "open-close") => (2, 10, 12, 29),
+            (1, _) => (31, 42, 35, 38),
+            (_, _) => (31, 41, 34, 38),
+        };
+        Self { lin_features, gauss_samples, both_features, both_samples }
+    }
+}
+
+/// A row's method.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Method {
+    Lin,
+    Gauss,
+    Both,
+    Forward,
+    TippingLin,
+    KernelRidge,
+    Knn5,
+}
+
+impl Method {
+    /// Those that select a number of columns that can be asked for.
+    pub(crate) const COUNTED: [Self; 4] = [Self::Lin, Self::Gauss, Self::Both, Self::Forward];
+    /// Those that do not.
+    pub(crate) const UNCOUNTED: [Self; 3] = [Self::TippingLin, Self::KernelRidge, Self::Knn5];
+
+    /// The name in tables and JSON.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Lin => "lin",
+            Self::Gauss => "gauss",
+            Self::Both => "both",
+            Self::Forward => "forward",
+            Self::TippingLin => "tipping_lin",
+            Self::KernelRidge => "kernel_ridge",
+            Self::Knn5 => "knn5",
+        }
+    }
+
+    /// The regressor with these counts; `None` for nearest neighbours, which fit nothing.
+    pub(crate) fn regressor(self, counts: Counts) -> Option<Regressor> {
+        let gaussian = Bridges::default().kernel;
+        Some(match self {
+            Self::Lin => Regressor::Bridges(Bridges {
+                kernel: Kernel::Linear,
+                stop: Stop::Count(counts.lin_features),
+                ..Bridges::default()
+            }),
+            Self::Gauss => Regressor::Bridges(Bridges {
+                kernel: gaussian,
+                stop: Stop::Count(counts.gauss_samples),
+                ..Bridges::default()
+            }),
+            Self::Both => Regressor::Cascade(Cascade {
+                features: Stop::Count(counts.both_features),
+                samples: Stop::Count(counts.both_samples),
+                ..Cascade::default()
+            }),
+            Self::Forward => Regressor::Forward(ForwardSelection {
+                kernel: gaussian,
+                count: counts.gauss_samples,
+                ..ForwardSelection::default()
+            }),
+            Self::TippingLin => {
+                Regressor::Tipping(Tipping { kernel: Kernel::Linear, ..Tipping::default() })
+            }
+            Self::KernelRidge => Regressor::KernelRidge(KernelRidge::default()),
+            Self::Knn5 => return None,
+        })
+    }
+}

@@ -1,0 +1,184 @@
+//! `cargo xtask eval-table1`: the paper's Table 1 (§ 5.2) on our data.
+
+mod method;
+mod paper;
+mod print;
+mod trial;
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use clap::Args;
+use phalanx::{OrientationRule, Progress, describe_poses};
+use phalanx_camera::Rig;
+use phalanx_hand::HandShape;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::data_set::DataSet;
+use crate::metrics::AngleErrors;
+use crate::split::Split;
+use crate::{files, progress};
+use method::{Counts, Method};
+use paper::PaperRow;
+use trial::{Outcome, Trial};
+
+pub(crate) use method::{Counts as PaperCounts, Method as TableMethod};
+
+/// The camera of the single-view rows.
+const SINGLE_VIEW: &str = "top";
+/// Every figure is the mean over this many random even splits.
+const SPLITS: u64 = 5;
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// A trajectory to evaluate in place of ours: CSV, degrees.
+    #[arg(long, value_name = "FILE.csv")]
+    poses: Option<PathBuf>,
+    /// Write the rows as JSON too.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// One row of the table.
+#[derive(Serialize)]
+struct Row {
+    views: usize,
+    data_set: String,
+    kernels: &'static str,
+    counts: &'static str,
+    selected_features: usize,
+    selected_samples: Option<usize>,
+    train_samples: usize,
+    test_samples: usize,
+    mae_deg: f64,
+    std_deg: f64,
+    worst_deg: f64,
+    worst_dof: &'static str,
+    mean_predictor_mae_deg: f64,
+    paper: Option<PaperRow>,
+}
+
+#[derive(Serialize)]
+struct Table {
+    rows: Vec<Row>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let data_sets = match &arguments.poses {
+        Some(path) => vec![DataSet::from_file("poses", path)?],
+        None => vec![DataSet::stored("open-close")?, DataSet::stored("complex")?],
+    };
+    let (rig, hand, bar) = (files::rig(None)?, files::hand(None)?, progress::Bar::new());
+    let mut rows = Vec::new();
+    for data_set in &data_sets {
+        rows.extend(evaluate(data_set, &rig, &hand, &bar)?);
+    }
+    drop(bar);
+    let table = Table { rows };
+    if let Some(path) = &arguments.json {
+        let mut json = serde_json::to_vec_pretty(&table)?;
+        json.push(b'\n');
+        files::write_whole(path, &json)?;
+    }
+    print::print(&table.rows);
+    Ok(())
+}
+
+/// All rows of one data set.
+fn evaluate(
+    data_set: &DataSet,
+    rig: &Rig,
+    hand: &HandShape,
+    progress: &dyn Progress,
+) -> Result<Vec<Row>> {
+    let active = data_set.active_angles()?;
+    let contexts =
+        describe_poses(rig, hand, &data_set.poses, OrientationRule::HandAxis, progress)?;
+    let single = rig.cameras.iter().position(|camera| camera.name == SINGLE_VIEW);
+    let single = single.with_context(|| format!("the rig has no camera '{SINGLE_VIEW}'"))?;
+    let views = [vec![single], (0..rig.cameras.len()).collect::<Vec<_>>()];
+
+    let runs: Vec<(usize, u64)> = (0..views.len()).flat_map(|v| (0..SPLITS).map(move |s| (v, s))).collect();
+    progress.begin("split, cluster, fit, test", runs.len());
+    let trials: Vec<Result<Vec<(Job, Outcome)>>> = runs
+        .par_iter()
+        .map(|&(v, split)| {
+            let trial = Trial {
+                contexts: &contexts,
+                poses: &data_set.poses,
+                views: &views[v],
+                active: &active,
+                split: Split::even(data_set.poses.len(), split),
+                seed: split,
+            };
+            let outcomes = trial.run(&jobs(&data_set.name, views[v].len(), rig.cameras.len()));
+            progress.step();
+            outcomes
+        })
+        .collect();
+    let trials = trials.into_iter().collect::<Result<Vec<_>>>()?;
+    let per_views = trials.chunks(SPLITS as usize).zip(&views);
+    Ok(per_views.flat_map(|(trials, views)| rows(&data_set.name, views.len(), trials)).collect())
+}
+
+/// A method at a number of columns, under the names of the rows that it fills.
+#[derive(Clone, PartialEq, Eq)]
+struct Job {
+    method: Method,
+    counts: Counts,
+    rows: Vec<&'static str>,
+}
+
+/// What is fitted on each split: every method at the paper's counts, and the selecting ones at
+/// the counts of the most views too, where those differ.
+fn jobs(data_set: &str, views: usize, most_views: usize) -> Vec<Job> {
+    let paper = Counts::paper(views, data_set);
+    let equal = Counts::paper(most_views, data_set);
+    let mut jobs = Vec::new();
+    for method in Method::COUNTED {
+        if paper == equal {
+            jobs.push(Job { method, counts: paper, rows: vec!["paper", "equal"] });
+        } else {
+            jobs.push(Job { method, counts: paper, rows: vec!["paper"] });
+            jobs.push(Job { method, counts: equal, rows: vec!["equal"] });
+        }
+    }
+    let uncounted = |method| Job { method, counts: paper, rows: vec!["paper"] };
+    jobs.extend(Method::UNCOUNTED.map(uncounted));
+    jobs
+}
+
+/// The rows of one number of views: each job's mean over the splits.
+fn rows(data_set: &str, views: usize, trials: &[Vec<(Job, Outcome)>]) -> Vec<Row> {
+    let mut rows: Vec<Row> = Vec::new();
+    for (k, (job, first)) in trials[0].iter().enumerate() {
+        let of_job = || trials.iter().map(|trial| &trial[k].1);
+        let errors = AngleErrors::average(&of_job().map(|o| o.errors.clone()).collect::<Vec<_>>());
+        let mean_count = |count: fn(&Outcome) -> usize| {
+            let total: usize = of_job().map(count).sum();
+            (total + trials.len() / 2) / trials.len()
+        };
+        let (worst_dof, worst_deg) = errors.worst();
+        rows.extend(job.rows.iter().map(|&counts| Row {
+            views,
+            data_set: data_set.to_owned(),
+            kernels: job.method.name(),
+            counts,
+            selected_features: mean_count(|o| o.selected_features),
+            selected_samples: first
+                .selected_samples
+                .map(|_| mean_count(|o| o.selected_samples.unwrap_or_default())),
+            train_samples: first.train_samples,
+            test_samples: first.test_samples,
+            mae_deg: errors.mae(),
+            std_deg: errors.std(),
+            worst_deg,
+            worst_dof: worst_dof.name(),
+            mean_predictor_mae_deg: of_job().map(|o| o.mean_predictor_mae_deg).sum::<f64>()
+                / trials.len() as f64,
+            paper: paper::row(views, data_set, job.method.name()).filter(|_| counts == "paper"),
+        }));
+    }
+    rows
+}

@@ -1,0 +1,76 @@
+//! The table on standard output.
+
+use comfy_table::{Table, presets};
+
+use super::paper::PaperRow;
+use super::{Row, SPLITS};
+
+const HEADER: [&str; 12] = [
+    "views", "data set", "kernels", "ftrs.", "smpls.", "avg.", "ratio", "STD", "worst", "which dof",
+    "paper avg. / STD / worst", "paper which",
+];
+
+pub(crate) fn print(rows: &[Row]) {
+    println!("Table 1. Mean of {SPLITS} random even splits; degrees over the active angles.");
+    println!("ratio: avg. over the error of predicting the training mean. ~: which of three cells");
+    println!("the paper's figure belongs to is a guess; ·: not legible.\n");
+    println!("At the paper's counts:");
+    println!("{}\n", table(rows.iter().filter(|row| row.counts == "paper")));
+    println!("At equal counts (those of three views):");
+    println!("{}", table(rows.iter().filter(|row| row.counts == "equal")));
+}
+
+fn table<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {
+    let mut table = Table::new();
+    table.load_preset(presets::ASCII_MARKDOWN).set_header(HEADER);
+    let mut block = None;
+    for row in rows {
+        let this = (row.views, row.data_set.as_str());
+        if block != Some(this) {
+            block = Some(this);
+            table.add_row(mean_predictor_cells(row));
+        }
+        table.add_row(cells(row));
+    }
+    table
+}
+
+fn mean_predictor_cells(row: &Row) -> Vec<String> {
+    let mean = format!("{:.2}", row.mean_predictor_mae_deg);
+    let text = ["", "", "(mean)", "", "", &mean, "1.000", "", "", "", "", ""];
+    let mut cells: Vec<String> = text.map(str::to_owned).into();
+    cells[0] = row.views.to_string();
+    cells[1].clone_from(&row.data_set);
+    cells
+}
+
+fn cells(row: &Row) -> Vec<String> {
+    vec![
+        row.views.to_string(),
+        row.data_set.clone(),
+        row.kernels.to_owned(),
+        row.selected_features.to_string(),
+        row.selected_samples.map_or("–".to_owned(), |count| count.to_string()),
+        format!("{:.2}", row.mae_deg),
+        format!("{:.3}", row.mae_deg / row.mean_predictor_mae_deg),
+        format!("{:.2}", row.std_deg),
+        format!("{:.1}", row.worst_deg),
+        row.worst_dof.to_owned(),
+        row.paper.as_ref().map_or_else(String::new, paper_figures),
+        row.paper.as_ref().map_or_else(String::new, |paper| paper.worst_dof.name().to_owned()),
+    ]
+}
+
+fn paper_figures(paper: &PaperRow) -> String {
+    let figure = |name: &str, value: Option<f64>| match value {
+        None => "·".to_owned(),
+        Some(value) if paper.guessed.contains(&name) => format!("~{value:.1}"),
+        Some(value) => format!("{value:.1}"),
+    };
+    format!(
+        "{} / {} / {}",
+        figure("mae_deg", paper.mae_deg),
+        figure("std_deg", paper.std_deg),
+        figure("worst_deg", paper.worst_deg)
+    )
+}

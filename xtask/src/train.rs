@@ -1,0 +1,107 @@
+//! `cargo xtask train`: learns an estimator and saves it.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use clap::{Args, ValueEnum};
+use phalanx::Training;
+use phalanx_camera::Rig;
+
+use crate::data_set::DataSet;
+use crate::table1::{PaperCounts, TableMethod};
+use crate::{files, progress};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// `open-close`, `complex`, or a file of poses (CSV, degrees).
+    #[arg(long, default_value = "complex")]
+    data_set: String,
+    /// The cameras: names from the rig separated by commas, or `1` for the top view, `3` for all.
+    #[arg(long, default_value = "3")]
+    views: String,
+    /// The regressor.
+    #[arg(long, value_enum, default_value_t = Kernels::KernelRidge)]
+    kernels: Kernels,
+    /// The rig, TOML; the desk of fixtures/ by default.
+    #[arg(long, value_name = "FILE.toml")]
+    rig: Option<PathBuf>,
+    /// The hand, TOML; the mean adult of fixtures/ by default.
+    #[arg(long, value_name = "FILE.toml")]
+    hand: Option<PathBuf>,
+    /// Where the model goes.
+    #[arg(long, value_name = "FILE", default_value = "target/hand.phalanx")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum Kernels {
+    /// Linear, the paper's number of features.
+    Lin,
+    /// Gaussian, the paper's number of samples.
+    Gauss,
+    /// Features selected linearly, then samples by Gaussian kernels.
+    Both,
+    /// Gaussian, samples by orthogonal forward selection.
+    Forward,
+    /// Tipping's relevance vector machine for each output, linear.
+    TippingLin,
+    /// Dense Gaussian kernel ridge regression.
+    KernelRidge,
+}
+
+impl Kernels {
+    fn method(self) -> TableMethod {
+        match self {
+            Self::Lin => TableMethod::Lin,
+            Self::Gauss => TableMethod::Gauss,
+            Self::Both => TableMethod::Both,
+            Self::Forward => TableMethod::Forward,
+            Self::TippingLin => TableMethod::TippingLin,
+            Self::KernelRidge => TableMethod::KernelRidge,
+        }
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let data_set = match arguments.data_set.as_str() {
+        name @ ("open-close" | "complex") => DataSet::stored(name)?,
+        path => DataSet::from_file("poses", path.as_ref())?,
+    };
+    let rig = files::rig(arguments.rig.as_deref())?;
+    let hand = files::hand(arguments.hand.as_deref())?;
+    let rig = views(&rig, &arguments.views)?;
+    let counts = PaperCounts::paper(rig.cameras.len(), &data_set.name);
+    let regressor = arguments.kernels.method().regressor(counts);
+    let training = Training {
+        regressor: regressor.context("nearest neighbours fit nothing")?,
+        ..Training::default()
+    };
+    let bar = progress::Bar::new();
+    let estimator = training.run(&rig, &hand, &data_set.poses, &bar)?;
+    drop(bar);
+    let bytes = estimator.to_bytes()?;
+    files::write_whole(&arguments.out, &bytes)?;
+    let names: Vec<&str> = rig.cameras.iter().map(|camera| camera.name.as_str()).collect();
+    println!(
+        "{}: {} poses of '{}' through {}; reads {} features, {} kernel centres; {} KiB",
+        arguments.out.display(),
+        data_set.poses.len(),
+        data_set.name,
+        names.join(", "),
+        estimator.model().selected_features().len(),
+        estimator.model().kept_samples().len(),
+        bytes.len().div_ceil(1024),
+    );
+    Ok(())
+}
+
+/// The cameras that were asked for.
+fn views(rig: &Rig, views: &str) -> Result<Rig> {
+    let rig = match views {
+        "3" => rig.clone(),
+        "1" => rig.select(&["top"])?,
+        names => rig.select(&names.split(',').map(str::trim).collect::<Vec<_>>())?,
+    };
+    Ok(rig)
+}
