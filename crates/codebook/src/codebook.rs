@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Error, Result,
-    packed::{Comparison, Packed},
+    packed::{Packed, Support},
     samples,
 };
 
@@ -75,10 +75,17 @@ impl Codebook {
             return Err(Error::Shape { what: "sample", values: sample.len(), dim: self.dim });
         }
         samples::check("sample", sample, self.dim)?;
-        let mut comparison = Comparison::default();
-        let (centre, chi_squared) = self.packed.nearest(Arch::new(), sample, &mut comparison);
+        let (mut support, mut distances) = (Support::default(), Vec::new());
+        support.find(sample);
+        let chi_squared = self.packed.whole().compare(Arch::new(), &support, &mut distances);
+        let centre = first_equal(&distances, chi_squared);
         Ok(Nearest { centre, chi_squared })
     }
+}
+
+/// The index of the first distance that is the smallest one.
+pub(crate) fn first_equal(distances: &[f32], smallest: f32) -> usize {
+    distances.iter().position(|&d| d == smallest).unwrap_or_default()
 }
 
 /// What is stored of a codebook.

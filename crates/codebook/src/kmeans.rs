@@ -1,6 +1,6 @@
 use rand_pcg::Pcg64;
 
-use crate::{Codebook, Error, Result, lloyd::Assignment, samples, seeding};
+use crate::{Codebook, Error, Result, lloyd::Assignment, packed::Packed, samples, seeding};
 
 /// K-means with the χ² statistic: the settings, and [`fit`](KMeans::fit).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,8 +41,9 @@ pub struct Report {
     /// Which restart it was, from 0.
     pub restart: usize,
     /// After each assignment, the mean χ² of the samples to their nearest centres. It falls, but
-    /// for rises of some 1e-5 near the end: the mean of the samples is not quite the minimiser of
-    /// their χ².
+    /// for small rises: the mean of the samples is not quite the minimiser of their χ². A rise is
+    /// some 1e-4 of the distortion on 20,000 shape contexts, and up to 1e-3 when the centres have
+    /// only a few scattered samples each.
     pub distortions: Vec<f64>,
     /// Whether the distortion settled before the iterations ran out.
     pub converged: bool,
@@ -56,7 +57,8 @@ const MIN_SCALE: f64 = 1e-6;
 impl KMeans {
     /// Finds centres for histograms of `dim` bins, given one after the other.
     ///
-    /// Runs in rayon's current thread pool; the result is the same, bit for bit, in any.
+    /// Runs in rayon's current thread pool; the result is the same, bit for bit, in any. Keeps a
+    /// second copy of the samples while it runs.
     ///
     /// # Errors
     /// A setting outside its range, no samples, not a whole number of them, one that is not a
@@ -68,9 +70,10 @@ impl KMeans {
         if count < self.centres {
             return Err(Error::TooFewDistinct { distinct: count, centres: self.centres });
         }
-        let (mut centres, mut report) = self.run(samples, dim, 0)?;
+        let packed = Packed::new(samples, dim);
+        let (mut centres, mut report) = self.run(samples, dim, &packed, 0)?;
         for restart in 1..self.restarts {
-            let (other_centres, other) = self.run(samples, dim, restart)?;
+            let (other_centres, other) = self.run(samples, dim, &packed, restart)?;
             if other.distortions.last() < report.distortions.last() {
                 (centres, report) = (other_centres, other);
             }
@@ -94,9 +97,15 @@ impl KMeans {
         Ok(())
     }
 
-    fn run(&self, samples: &[f32], dim: usize, restart: usize) -> Result<(Vec<f32>, Report)> {
+    fn run(
+        &self,
+        samples: &[f32],
+        dim: usize,
+        packed: &Packed,
+        restart: usize,
+    ) -> Result<(Vec<f32>, Report)> {
         let mut rng = Pcg64::new(u128::from(self.seed), restart as u128);
-        let mut centres = seeding::seed(samples, dim, self.centres, &mut rng)?;
+        let mut centres = seeding::seed(samples, dim, packed, self.centres, &mut rng)?;
         let mut distances = vec![0.0; samples.len() / dim];
         let mut report = Report { restart, distortions: Vec::new(), converged: false, reseeded: 0 };
         loop {

@@ -3,11 +3,14 @@
 use pulp::Arch;
 use rayon::prelude::*;
 
-use crate::packed::{Comparison, Packed};
+use crate::{
+    codebook::first_equal,
+    packed::{LANES, Packed, Support},
+};
 
 /// Samples that are summed up together. Fixed, so that the rounding of the sums does not depend on
 /// the number of threads.
-pub(crate) const BLOCK: usize = 2048;
+pub(crate) const BLOCK: usize = 128 * LANES;
 
 /// What an assignment of the samples says of each centre.
 pub(crate) struct Assignment {
@@ -46,11 +49,12 @@ impl Assignment {
     ) -> Self {
         let arch = Arch::new();
         let mut block = Self::empty(count, dim);
-        let mut comparison = Comparison::default();
+        let (mut support, mut to_centres) = (Support::default(), Vec::new());
         for (sample, distance) in samples.chunks_exact(dim).zip(distances) {
-            let (centre, chi_squared) = packed.nearest(arch, sample, &mut comparison);
-            *distance = chi_squared;
-            block.total += f64::from(chi_squared);
+            support.find(sample);
+            *distance = packed.whole().compare(arch, &support, &mut to_centres);
+            let centre = first_equal(&to_centres, *distance);
+            block.total += f64::from(*distance);
             block.counts[centre] += 1;
             let sums = &mut block.sums[centre * dim..(centre + 1) * dim];
             for (sum, &height) in sums.iter_mut().zip(sample) {
@@ -103,4 +107,21 @@ impl Assignment {
 /// The index of the largest distance, the first of equals.
 fn worst(distances: &[f32]) -> usize {
     (0..distances.len()).fold(0, |worst, i| if distances[i] > distances[worst] { i } else { worst })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The second and third centre equal the first and lose every sample to it.
+    #[test]
+    fn empty_centres_move_to_the_worst_served_samples() {
+        let samples = [[1.0, 0.0], [0.9, 0.1], [0.2, 0.8], [0.0, 1.0]].concat();
+        let mut centres = [[1.0, 0.0]; 3].concat();
+        let mut distances = [0.0; 4];
+        let assignment = Assignment::new(&samples, 2, &centres, &mut distances);
+        assert_eq!(assignment.counts, [4, 0, 0]);
+        assert_eq!(assignment.move_centres(&samples, &mut centres, &mut distances), 2);
+        assert_eq!(centres, [[0.525, 0.475], [0.0, 1.0], [0.2, 0.8]].concat());
+    }
 }

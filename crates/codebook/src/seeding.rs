@@ -1,58 +1,61 @@
 //! k-means++ (Arthur and Vassilvitskii, 2007) with the χ² statistic as the squared distance.
-#![allow(clippy::inline_always, reason = "must be compiled with the caller's instruction set")]
 
-use pulp::{Arch, NullaryFnOnce};
+use pulp::Arch;
 use rand_core::Rng;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
-use crate::{Error, Result, chi_squared, lloyd::BLOCK};
+use crate::{
+    Error, Result,
+    lloyd::BLOCK,
+    packed::{Packed, Support},
+};
+
+/// Samples nearer than this are one and the same: the rounding of χ² in f32 is below it.
+const SAME: f32 = 1e-6;
 
 /// The first centre is a sample drawn evenly, each further one a sample drawn in proportion to its
-/// χ² to the nearest centre so far. Samples that equal a centre cannot be drawn, so the centres
+/// χ² to the nearest centre so far. A sample that equals a centre cannot be drawn, so the centres
 /// differ.
-pub(crate) fn seed(samples: &[f32], dim: usize, count: usize, rng: &mut Pcg64) -> Result<Vec<f32>> {
-    let sample = |i: usize| &samples[i * dim..(i + 1) * dim];
+pub(crate) fn seed(
+    samples: &[f32],
+    dim: usize,
+    packed: &Packed,
+    count: usize,
+    rng: &mut Pcg64,
+) -> Result<Vec<f32>> {
     let n = samples.len() / dim;
     let mut centres = Vec::with_capacity(count * dim);
     let mut distances = vec![f32::INFINITY; n];
     let mut drawn = ((uniform(rng) * n as f64) as usize).min(n - 1);
     for chosen in 1..=count {
-        centres.extend_from_slice(sample(drawn));
-        if chosen == count {
-            break;
+        let centre = &samples[drawn * dim..(drawn + 1) * dim];
+        centres.extend_from_slice(centre);
+        if chosen < count {
+            approach(packed, centre, &mut distances);
+            drawn = draw(&distances, uniform(rng))
+                .ok_or(Error::TooFewDistinct { distinct: chosen, centres: count })?;
         }
-        approach(samples, dim, sample(drawn), &mut distances);
-        drawn = draw(&distances, uniform(rng))
-            .ok_or(Error::TooFewDistinct { distinct: chosen, centres: count })?;
     }
     Ok(centres)
 }
 
 /// Lowers each sample's distance to that from a new centre, where that is smaller.
-fn approach(samples: &[f32], dim: usize, centre: &[f32], distances: &mut [f32]) {
+///
+/// The packed samples meet the one centre, as in an assignment the packed centres one sample.
+fn approach(packed: &Packed, centre: &[f32], distances: &mut [f32]) {
     let arch = Arch::new();
-    samples.par_chunks(BLOCK * dim).zip(distances.par_chunks_mut(BLOCK)).for_each(
-        |(samples, distances)| arch.dispatch(Approach { samples, dim, centre, distances }),
+    let mut support = Support::default();
+    support.find(centre);
+    packed.tiles(BLOCK).zip(distances.par_chunks_mut(BLOCK)).for_each_init(
+        Vec::new,
+        |to_centre, (tile, distances)| {
+            tile.compare(arch, &support, to_centre);
+            for (distance, &new) in distances.iter_mut().zip(&*to_centre) {
+                *distance = if new < SAME { 0.0 } else { distance.min(new) };
+            }
+        },
     );
-}
-
-struct Approach<'a> {
-    samples: &'a [f32],
-    dim: usize,
-    centre: &'a [f32],
-    distances: &'a mut [f32],
-}
-
-impl NullaryFnOnce for Approach<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        for (sample, distance) in self.samples.chunks_exact(self.dim).zip(self.distances) {
-            *distance = distance.min(chi_squared::between(sample, self.centre));
-        }
-    }
 }
 
 /// The index at which the running sum of the weights passes `portion` (0 to 1) of their total;

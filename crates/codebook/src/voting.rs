@@ -1,9 +1,10 @@
 use pulp::Arch;
+use serde::{Deserialize, Serialize};
 
-use crate::{Codebook, Error, Result, packed::Comparison, samples};
+use crate::{Codebook, Error, Result, packed::Support, samples};
 
 /// How samples vote.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Voting {
     /// Into how many of the nearest centres each sample votes, 1 to K. With 1 every vote is whole:
     /// a histogram of nearest centres.
@@ -20,7 +21,8 @@ impl Default for Voting {
 /// The memory that voting needs, kept from one call to the next.
 #[derive(Debug, Clone, Default)]
 pub struct Scratch {
-    comparison: Comparison,
+    support: Support,
+    distances: Vec<f32>,
     ranks: Vec<Rank>,
     weights: Vec<f64>,
 }
@@ -54,13 +56,15 @@ impl Codebook {
         samples::check("sample", samples, self.dim())?;
 
         out.fill(0.0);
-        let Scratch { comparison, ranks, weights } = scratch;
+        let Scratch { support, distances, ranks, weights } = scratch;
         let arch = Arch::new();
         for sample in samples.chunks_exact(self.dim()) {
-            let (distances, smallest) = self.packed.compare(arch, sample, comparison);
+            support.find(sample);
+            let smallest = self.packed.whole().compare(arch, support, distances);
             let nearest = find_nearest(&distances[..centres], neighbours, ranks);
             // The nearest one's weight is 1, however far it is.
-            let weight = |rank: &Rank| (f64::from(smallest - rank.chi_squared()) / self.scale()).exp();
+            let weight =
+                |rank: &Rank| (f64::from(smallest - rank.chi_squared()) / self.scale()).exp();
             weights.clear();
             weights.extend(nearest.iter().map(weight));
             let total: f64 = weights.iter().sum();
