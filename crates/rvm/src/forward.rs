@@ -53,9 +53,8 @@ impl ForwardSelection {
         }
         let mut kept = search.chosen;
         kept.sort_unstable();
-        let columns = Mat::from_fn(design.columns.nrows(), kept.len(), |i, k| {
-            design.columns[(i, kept[k])]
-        });
+        let columns =
+            Mat::from_fn(design.columns.nrows(), kept.len(), |i, k| design.columns[(i, kept[k])]);
         let gram = linalg::gram(columns.as_ref());
         let correlations = linalg::product(columns.transpose(), design.targets());
         let scales = vec![self.lambda.sqrt().recip(); kept.len()];
@@ -84,8 +83,7 @@ struct Search<'a> {
 impl<'a> Search<'a> {
     fn new(design: &'a Design<'_>, lambda: f64) -> Self {
         let columns = design.columns.as_ref();
-        let total: Vec<f64> =
-            columns.col_iter().map(|c| c.squared_norm_l2() + lambda).collect();
+        let total: Vec<f64> = columns.col_iter().map(|c| c.squared_norm_l2() + lambda).collect();
         Self {
             columns,
             lambda,
@@ -115,7 +113,9 @@ impl<'a> Search<'a> {
             linalg::axpy(&mut column, -earlier[best], earlier);
         }
         let pivot = self.outside[best].sqrt();
-        column.iter_mut().for_each(|v| *v /= pivot);
+        for value in &mut column {
+            *value /= pivot;
+        }
         let projection: Vec<f64> =
             self.correlations.col_as_slice(best).iter().map(|v| v / pivot).collect();
         for (k, &value) in column.iter().enumerate() {

@@ -134,9 +134,8 @@ impl Dual {
         let factor = linalg::lower_inverse(linalg::cholesky(system)?.as_ref());
         let half = linalg::product(factor.as_ref(), targets);
         let weights = linalg::product(factor.transpose(), half.as_ref());
-        let leverage: Vec<f64> = (0..n)
-            .map(|i| lambda * factor.col(i).squared_norm_l2() - 1.0 / n as f64)
-            .collect();
+        let leverage: Vec<f64> =
+            (0..n).map(|i| lambda * factor.col(i).squared_norm_l2() - 1.0 / n as f64).collect();
         leverage.iter().all(|&l| l > 0.0).then_some(Self { factor, weights, leverage, lambda })
     }
 

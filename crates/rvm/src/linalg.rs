@@ -2,7 +2,7 @@
 //! depends on the number of threads.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor;
+use faer::linalg::cholesky::llt::factor::{self, LltRegularization};
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_inverse::invert_lower_triangular;
 use faer::linalg::triangular_solve::{
@@ -49,10 +49,10 @@ pub(crate) fn gram(x: MatRef<'_, f64>) -> Mat<f64> {
 pub(crate) fn cholesky(mut a: Mat<f64>) -> Option<Mat<f64>> {
     let n = a.nrows();
     let params = Spec::default();
-    let mut memory =
-        MemBuffer::new(factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, params));
+    let mut memory = MemBuffer::new(factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, params));
     let stack = MemStack::new(&mut memory);
-    factor::cholesky_in_place(a.as_mut(), Default::default(), Par::Seq, stack, params).ok()?;
+    factor::cholesky_in_place(a.as_mut(), LltRegularization::default(), Par::Seq, stack, params)
+        .ok()?;
     for j in 0..n {
         a.col_as_slice_mut(j)[..j].fill(0.0);
     }

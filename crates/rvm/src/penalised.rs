@@ -44,9 +44,8 @@ impl Penalised {
     /// The model on the columns `kept` of `design`, with each target's noise estimated from its
     /// residuals over the degrees of freedom that the penalised fit and the bias leave.
     pub(crate) fn model(&self, design: &Design<'_>, kept: &[usize]) -> Model {
-        let columns = Mat::from_fn(design.columns.nrows(), kept.len(), |i, k| {
-            design.columns[(i, kept[k])]
-        });
+        let columns =
+            Mat::from_fn(design.columns.nrows(), kept.len(), |i, k| design.columns[(i, kept[k])]);
         let fitted = linalg::product(columns.as_ref(), self.weights.as_ref());
         let residuals = design.targets() - &fitted;
         // With M = C⁻¹D the weights' covariance relative to the noise is Σ = MᵀM, and the fit uses
@@ -60,10 +59,8 @@ impl Penalised {
         let noise: Vec<f64> = (0..residuals.ncols())
             .map(|j| (residuals.col(j).iter().map(|r| r * r).sum::<f64>() / left).sqrt())
             .collect();
-        let posterior = Posterior::Weights(vec![Factor::pack(
-            (0..kept.len()).collect(),
-            factor.as_ref(),
-        )]);
+        let posterior =
+            Posterior::Weights(vec![Factor::pack((0..kept.len()).collect(), factor.as_ref())]);
         design.model(kept, self.weights.as_ref(), &noise, posterior)
     }
 }

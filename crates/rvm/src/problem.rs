@@ -50,11 +50,7 @@ pub(crate) struct Design<'a> {
 
 impl<'a> Design<'a> {
     /// Basis columns over `features`, all of which vary. With none there are no columns.
-    pub(crate) fn new(
-        problem: &'a Problem,
-        features: Vec<usize>,
-        kernel: Kernel,
-    ) -> Result<Self> {
+    pub(crate) fn new(problem: &'a Problem, features: Vec<usize>, kernel: Kernel) -> Result<Self> {
         kernel.check()?;
         let z = linalg::subrows(problem.z.as_ref(), &features);
         let size = match kernel {
@@ -152,7 +148,9 @@ fn centre(columns: &mut Mat<f64>) -> Vec<f64> {
         .map(|j| {
             let column = columns.col_as_slice_mut(j);
             let mean = column.iter().sum::<f64>() / column.len() as f64;
-            column.iter_mut().for_each(|v| *v -= mean);
+            for value in &mut *column {
+                *value -= mean;
+            }
             mean
         })
         .collect()

@@ -136,7 +136,11 @@ impl Factor {
     fn check(&self, p: usize) -> Result<()> {
         let n = self.columns.len();
         fault("posterior", "repeats a column", n > p)?;
-        fault("posterior", "names a column that is not there", self.columns.iter().any(|&c| c >= p))?;
+        fault(
+            "posterior",
+            "names a column that is not there",
+            self.columns.iter().any(|&c| c >= p),
+        )?;
         numbers("posterior", &self.packed, n.checked_mul(n + 1).map(|twice| twice / 2))
     }
 }

@@ -124,7 +124,9 @@ impl Model {
                         *squared += difference * difference;
                     }
                 }
-                phi.iter_mut().for_each(|value| *value = (-beta * *value).exp());
+                for value in phi.iter_mut() {
+                    *value = (-beta * *value).exp();
+                }
             }
         }
         phi.iter_mut().zip(&parts.column_means).for_each(|(value, mean)| *value -= mean);

@@ -4,7 +4,8 @@ use faer::{Mat, MatRef};
 
 use crate::{Error, Result, linalg};
 
-/// A column with less than this share of its energy outside the active ones depends on them.
+/// A column with less than this share of its energy outside the active ones depends on them, and
+/// is neither added nor re-estimated: its α could be anything.
 const DEPENDENT: f64 = 1e-10;
 
 /// One standardised target, seen through the Gram matrix.
@@ -105,22 +106,25 @@ impl<'a> Evidence<'a> {
             .fold(none, |best, step| if step.gain > best.gain { step } else { best })
     }
 
-    /// The best change of one column: with s and q measured without it, the evidence is greatest
-    /// at α = s²/(q² − s), or without the column if q² ≤ s.
-    fn step(&self, column: usize) -> Step {
-        let (s, q, now) = match self.position[column] {
+    /// s and q of a column, the sparsity and quality measured without it, and its precision now.
+    fn measures(&self, column: usize) -> (f64, f64, f64) {
+        match self.position[column] {
             Some(i) => {
-                let variance = self.sigma[i][i];
-                ((variance.recip() - self.alpha[i]).max(0.0), self.mu[i] / variance, self.alpha[i])
+                let (variance, alpha) = (self.sigma[i][i], self.alpha[i]);
+                ((variance.recip() - alpha).max(0.0), self.mu[i] / variance, alpha)
             }
             None => (self.sparsity[column], self.quality[column], f64::INFINITY),
-        };
-        let energy = self.beta * self.target.gram[(column, column)];
-        if now.is_infinite() && s <= DEPENDENT * energy {
-            return Step { column, alpha: now, gain: 0.0 };
         }
+    }
+
+    /// The best change of one column: the evidence is greatest at α = s²/(q² − s), or without the
+    /// column if q² ≤ s.
+    fn step(&self, column: usize) -> Step {
+        let (s, q, now) = self.measures(column);
+        let energy = self.beta * self.target.gram[(column, column)];
         let theta = q * q - s;
-        let alpha = if theta > 0.0 { s * s / theta } else { f64::INFINITY };
+        let apart = s > DEPENDENT * energy;
+        let alpha = if apart && theta > 0.0 { s * s / theta } else { f64::INFINITY };
         Step { column, alpha, gain: contribution(alpha, s, q) - contribution(now, s, q) }
     }
 
@@ -147,10 +151,10 @@ impl<'a> Evidence<'a> {
         let mean = variance * self.quality[column];
         let gram = self.target.gram;
         // The active columns' regression on the new one: e = βΣΦᵀφ.
-        let overlap: Vec<f64> = self.active.iter().map(|&k| self.beta * gram[(k, column)]).collect();
+        let overlap: Vec<f64> =
+            self.active.iter().map(|&k| self.beta * gram[(k, column)]).collect();
         let regression: Vec<f64> = self.sigma.iter().map(|row| dot(row, &overlap)).collect();
-        let mut outside: Vec<f64> =
-            gram.col(column).iter().map(|g| self.beta * g).collect();
+        let mut outside: Vec<f64> = gram.col(column).iter().map(|g| self.beta * g).collect();
         self.subtract_active(&mut outside, &regression);
         for (row, &e) in self.sigma.iter_mut().zip(&regression) {
             linalg::axpy(row, variance * e, &regression);
@@ -254,8 +258,7 @@ impl<'a> Evidence<'a> {
         for (j, d) in d.iter().enumerate() {
             factor.col_as_slice_mut(j).iter_mut().for_each(|v| *v *= d);
         }
-        let correlations =
-            Mat::from_fn(size, 1, |i, _| beta * self.target.correlations[active[i]]);
+        let correlations = Mat::from_fn(size, 1, |i, _| beta * self.target.correlations[active[i]]);
         let half = linalg::product(factor.as_ref(), correlations.as_ref());
         let mu = linalg::product(factor.transpose(), half.as_ref()).col_as_slice(0).to_vec();
         let log_determinant: f64 = (0..size).map(|i| 2.0 * cholesky[(i, i)].ln()).sum();
@@ -271,10 +274,8 @@ impl<'a> Evidence<'a> {
         let Posterior { factor, mu, value } = posterior;
         let rows = Mat::from_fn(self.active.len(), gram.ncols(), |i, k| gram[(k, self.active[i])]);
         let overlap = linalg::product(factor.as_ref(), rows.as_ref());
-        let fitted = linalg::product(
-            rows.transpose(),
-            MatRef::from_column_major_slice(&mu, mu.len(), 1),
-        );
+        let fitted =
+            linalg::product(rows.transpose(), MatRef::from_column_major_slice(&mu, mu.len(), 1));
         for k in 0..gram.ncols() {
             let explained = self.beta * self.beta * overlap.col(k).squared_norm_l2();
             self.sparsity[k] = self.beta * gram[(k, k)] - explained;
@@ -297,4 +298,90 @@ fn contribution(alpha: f64, s: f64, q: f64) -> f64 {
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::linalg::solvers::Solve;
+    use rand_core::Rng;
+    use rand_pcg::Pcg64Mcg;
+
+    use super::*;
+
+    /// S, Q and the log evidence from C = σ²I + ΦA⁻¹Φᵀ itself.
+    fn directly(
+        evidence: &Evidence<'_>,
+        phi: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+    ) -> (Vec<f64>, Vec<f64>, f64) {
+        let n = phi.nrows();
+        let mut c = evidence.noise() * Mat::<f64>::identity(n, n);
+        for (&k, alpha) in evidence.active.iter().zip(&evidence.alpha) {
+            c += phi.col(k) * phi.col(k).transpose() / faer::Scale(*alpha);
+        }
+        let lu = c.full_piv_lu();
+        let (by_phi, by_y) = (lu.solve(phi), lu.solve(y));
+        let sparsity = (0..phi.ncols()).map(|k| phi.col(k).transpose() * by_phi.col(k)).collect();
+        let quality = (0..phi.ncols()).map(|k| phi.col(k).transpose() * by_y.col(0)).collect();
+        // Centred data lie in n − 1 dimensions; the mean's direction has variance σ².
+        let log_determinant = c.determinant().ln() - evidence.noise().ln();
+        let normal = (n as f64 - 1.0) * (2.0 * std::f64::consts::PI).ln();
+        let misfit = y.col(0).transpose() * by_y.col(0);
+        (sparsity, quality, -0.5 * (normal + log_determinant + misfit))
+    }
+
+    #[test]
+    fn every_step_keeps_what_a_full_recomputation_gives() {
+        let mut random = Pcg64Mcg::new(77);
+        let mut uniform = || f64::from(random.next_u32()) / f64::from(u32::MAX) - 0.5;
+        let (n, p) = (25, 12);
+        let raw = Mat::from_fn(n, p, |_, _| uniform());
+        let phi = Mat::from_fn(n, p, |i, k| raw[(i, k)] - raw.col(k).sum() / n as f64);
+        let signal = Mat::from_fn(n, 1, |i, _| {
+            (0..p).map(|k| phi[(i, k)] * k as f64 / 6.0).sum::<f64>() + uniform()
+        });
+        let y = Mat::from_fn(n, 1, |i, _| signal[(i, 0)] - signal.col(0).sum() / n as f64);
+        let gram = linalg::gram(phi.as_ref());
+        let correlations = linalg::product(phi.transpose(), y.as_ref());
+        let target = Target {
+            gram: gram.as_ref(),
+            correlations: correlations.col_as_slice(0),
+            energy: y.squared_norm_l2(),
+            freedom: n as f64 - 1.0,
+        };
+        let mut evidence = Evidence::new(target, 0.2).unwrap();
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-8 * (1.0 + b.abs());
+        let (mut added, mut changed, mut deleted) = (0, 0, 0);
+        for round in 0..90 {
+            // Any step will do, not only the best: here a column at a time, at varying precisions.
+            let column = round * 5 % p;
+            let place = evidence.position[column];
+            let delete = place.is_some() && round % 3 == 0;
+            let alpha = if delete { f64::INFINITY } else { 0.1 + f64::from(round as u32 * 7 % 11) };
+            let (s, q, now) = evidence.measures(column);
+            let gain = contribution(alpha, s, q) - contribution(now, s, q);
+            evidence.take(&Step { column, alpha, gain });
+            match (place, delete) {
+                (None, _) => added += 1,
+                (Some(_), false) => changed += 1,
+                (Some(_), true) => deleted += 1,
+            }
+            if round % 20 == 19 {
+                evidence.update_noise(1e-4).unwrap();
+            }
+            let (sparsity, quality, value) = directly(&evidence, phi.as_ref(), y.as_ref());
+            assert!(close(evidence.value, value), "{} {value}", evidence.value);
+            for k in 0..p {
+                assert!(close(evidence.sparsity[k], sparsity[k]));
+                assert!(close(evidence.quality[k], quality[k]));
+            }
+            let posterior = evidence.posterior(evidence.beta).unwrap();
+            assert!(evidence.mu.iter().zip(&posterior.mu).all(|(a, b)| close(*a, *b)));
+            let sigma = linalg::gram(posterior.factor.as_ref());
+            for (i, row) in evidence.sigma.iter().enumerate() {
+                assert!(row.iter().zip(sigma.col_as_slice(i)).all(|(a, b)| close(*a, *b)));
+            }
+        }
+        assert!(added > 10 && changed > 10 && deleted > 10, "{added} {changed} {deleted}");
+    }
 }

@@ -94,8 +94,8 @@ impl Tipping {
         let mut evidence = Evidence::new(target, FIRST_NOISE.max(self.noise_floor))?;
         while trace.objective.len() < self.max_iterations {
             // A new noise variance costs about as much as a step for each active column.
-            let most = (10 + evidence.active().len())
-                .min(self.max_iterations - trace.objective.len());
+            let most =
+                (10 + evidence.active().len()).min(self.max_iterations - trace.objective.len());
             let mut gains = false;
             for _ in 0..most {
                 let step = evidence.best_step();

@@ -25,14 +25,12 @@ pub(crate) const FITTERS: [(&str, Fitter); 9] = [
     ("forward", |x, y| {
         ForwardSelection { kernel: GAUSSIAN, count: 1, ..ForwardSelection::default() }.fit(x, y)
     }),
-    ("cascade", |x, y| {
-        Cascade { features: Stop::Threshold(0.05), ..Cascade::default() }.fit(x, y)
-    }),
+    ("cascade", |x, y| Cascade { features: Stop::Threshold(0.05), ..Cascade::default() }.fit(x, y)),
 ];
 
 /// Few enough cases that the whole crate's tests stay quick.
 pub(crate) fn few() -> ProptestConfig {
-    ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() }
+    ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() }
 }
 
 pub(crate) struct Source(Pcg64Mcg);
