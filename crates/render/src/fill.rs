@@ -7,6 +7,7 @@ use glam::DVec2;
 /// Fills simple polygons by the edge-flag method (Ackland and Weste, 1981, *The edge flag
 /// algorithm: a fill method for raster scan displays*): each edge flips, in every row that it
 /// crosses, all pixels to its right; what is flipped an odd number of times is inside.
+#[derive(Debug, Clone)]
 pub(crate) struct Filler {
     width: usize,
     height: usize,
@@ -44,8 +45,7 @@ impl Filler {
     /// Marks where an edge crosses the rows, and widens the window to hold the marks.
     fn flip_right_of(&mut self, from: DVec2, to: DVec2, window: &mut Window) {
         let (upper, lower) = if from.y < to.y { (from, to) } else { (to, from) };
-        // A cast to usize clamps what lies left of or above the image to 0.
-        let rows = upper.y.ceil() as usize..self.height.min(lower.y.ceil() as usize);
+        let rows = index_from(upper.y)..self.height.min(index_from(lower.y));
         if rows.is_empty() {
             return;
         }
@@ -53,7 +53,7 @@ impl Filler {
         let slope = (lower.x - upper.x) / (lower.y - upper.y);
         for row in rows {
             let x = upper.x + (row as f64 - upper.y) * slope;
-            let column = x.ceil() as usize;
+            let column = index_from(x);
             window.columns.end = window.columns.end.max(self.width.min(column.saturating_add(1)));
             if column < self.width {
                 window.columns.start = window.columns.start.min(column);
@@ -77,4 +77,11 @@ impl Filler {
             }
         }
     }
+}
+
+/// The first index at or after `x`: its ceiling, without a call to the mathematics library.
+fn index_from(x: f64) -> usize {
+    // The cast rounds down, and clamps what is negative to 0.
+    let below = x as usize;
+    below.saturating_add(usize::from((below as f64) < x))
 }

@@ -13,7 +13,7 @@ use phalanx_hand::{Ball, Primitive};
 const NEAR: f64 = 1.0;
 
 /// How far the polygon may stay inside the outline, px.
-const DEVIATION: f64 = 0.02;
+pub(crate) const DEVIATION: f64 = 0.005;
 
 /// A filled ellipse of the normalised image plane: middle + √shape · (unit disc).
 #[derive(Clone, Copy, Default)]
@@ -45,9 +45,12 @@ impl Ellipse {
         Ok(Self { middle, shape })
     }
 
-    /// The square of the larger half-axis, at most doubled.
-    fn size(&self) -> f64 {
-        self.shape.x_axis.x + self.shape.y_axis.y
+    /// The largest radius of curvature: a²/b of the half-axes.
+    fn flattest(&self) -> f64 {
+        let half_trace = 0.5 * (self.shape.x_axis.x + self.shape.y_axis.y);
+        let determinant = self.shape.determinant();
+        let squared = half_trace + (half_trace * half_trace - determinant).max(0.0).sqrt();
+        squared * (squared / determinant).sqrt()
     }
 
     /// The furthest point towards `normal`, of any length, and its dot product with `normal`.
@@ -78,31 +81,18 @@ pub(crate) fn trace(
 /// Walks once around the hull of some ellipses by the direction of its normal: the furthest
 /// ellipse in each direction gives the corner.
 fn walk(ellipses: &[Ellipse], focal: f64, corners: &mut Vec<DVec2>) {
-    let largest = ellipses.iter().max_by(|a, b| a.size().total_cmp(&b.size()));
-    let Some(largest) = largest else { return };
-    // Directions evenly spread around the largest ellipse: normals of the circle that it maps
-    // to by its Cholesky factor. A chord of a circle of radius a spanning 2π/n stays within
-    // a π²/2n² of it.
-    let radius = largest.size().sqrt() * focal;
-    let steps = (PI * (radius / (2.0 * DEVIATION)).sqrt()).ceil().clamp(12.0, 512.0) as u32;
-    let [a, b, c] = [largest.shape.x_axis.x, largest.shape.x_axis.y, largest.shape.y_axis.y];
-    let l11 = a.sqrt();
-    let l21 = b / l11;
-    let l22 = (c - l21 * l21).sqrt();
-    let normal_of = |u: DVec2| DVec2::new((u.x - l21 * u.y / l22) / l11, u.y / l22);
-
+    // While its normal turns by 2π/n, a curve of radius ρ strays π²ρ/2n² from its chord.
+    let radius = focal * ellipses.iter().map(Ellipse::flattest).fold(0.0, f64::max);
+    let steps = (PI * (radius / (2.0 * DEVIATION)).sqrt()).ceil().clamp(12.0, 1024.0) as u32;
     let turn = DVec2::from_angle(TAU / f64::from(steps));
-    let mut on_circle = DVec2::X;
-    let mut normal = normal_of(on_circle);
+    let mut normal = DVec2::X;
     let (mut leader, mut corner) = furthest(ellipses, normal);
     for _ in 0..steps {
         corners.push(corner);
-        on_circle = turn.rotate(on_circle);
-        let next_normal = normal_of(on_circle);
+        let next_normal = turn.rotate(normal);
         let (next_leader, next_corner) = furthest(ellipses, next_normal);
         if next_leader != leader {
-            let line = [&ellipses[leader], &ellipses[next_leader]];
-            corners.extend(tangent(line, normal, next_normal));
+            change(ellipses, [leader, next_leader], [normal, next_normal], corners);
         }
         (normal, leader, corner) = (next_normal, next_leader, next_corner);
     }
@@ -120,12 +110,41 @@ fn furthest(ellipses: &[Ellipse], normal: DVec2) -> (usize, DVec2) {
     (best.0, best.1.1)
 }
 
-/// Where the common tangent of two ellipses touches them, when the first leads at one normal
-/// and the second at the next.
-fn tangent([first, second]: [&Ellipse; 2], from: DVec2, to: DVec2) -> [DVec2; 2] {
-    let lead = |normal: DVec2| first.support(normal).0 - second.support(normal).0;
-    let (before, after) = (lead(from), lead(to));
-    let share = if before > after { (before / (before - after)).clamp(0.0, 1.0) } else { 0.5 };
-    let normal = from.lerp(to, share);
-    [first.support(normal).1, second.support(normal).1]
+/// Appends the corners where the lead changes between two normals from one ellipse to another.
+fn change(
+    ellipses: &[Ellipse],
+    [from, to]: [usize; 2],
+    [first, last]: [DVec2; 2],
+    corners: &mut Vec<DVec2>,
+) {
+    let (normal, touches) = tangent([&ellipses[from], &ellipses[to]], [first, last]);
+    let (between, _) = furthest(ellipses, normal);
+    if between == from || between == to {
+        corners.extend(touches);
+    } else {
+        // A third leads for less than a step. Far from the others it still matters.
+        let lines = [([from, between], [first, normal]), ([between, to], [normal, last])];
+        for (pair, normals) in lines {
+            corners.extend(tangent(pair.map(|i| &ellipses[i]), normals).1);
+        }
+    }
+}
+
+/// The normal of the common tangent of two ellipses, and where it touches them, when the first
+/// leads at one normal and the second at the next.
+fn tangent([one, other]: [&Ellipse; 2], [mut first, mut last]: [DVec2; 2]) -> (DVec2, [DVec2; 2]) {
+    let lead = |normal: DVec2| one.support(normal).0 - other.support(normal).0;
+    let mut normal = first;
+    // Two steps of false position: the lead is nearly linear over so small a turn.
+    for _ in 0..2 {
+        let (before, after) = (lead(first), lead(last));
+        let share = if before > after { before / (before - after) } else { 0.5 };
+        normal = first.lerp(last, share.clamp(0.0, 1.0));
+        if lead(normal) > 0.0 {
+            first = normal;
+        } else {
+            last = normal;
+        }
+    }
+    (normal, [one.support(normal).1, other.support(normal).1])
 }

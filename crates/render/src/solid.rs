@@ -8,13 +8,14 @@ use phalanx_hand::Primitive;
 use crate::surface::{Cone, Face, Hit, Ray, Surface};
 
 /// A rectangle of the image, px.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 struct Window {
     least: DVec2,
     most: DVec2,
 }
 
 /// A hull of balls, squashed.
+#[derive(Debug, Clone)]
 struct Solid {
     /// Which surfaces are the hull's.
     surfaces: Range<usize>,
@@ -25,7 +26,7 @@ struct Solid {
 }
 
 /// The solids of one picture, in the camera's frame.
-#[derive(Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Scene {
     solids: Vec<Solid>,
     surfaces: Vec<Surface>,
@@ -96,3 +97,6 @@ impl Solid {
 fn first(hits: impl Iterator<Item = Hit>) -> Option<Hit> {
     hits.min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,7 +2,8 @@
 //!
 //! The hull of up to three balls is bounded by pieces of the balls, of the cones that touch two
 //! of them and of the planes that touch all three. All of these surfaces lie within the hull,
-//! so the first that a ray from outside enters is where it enters the hull.
+//! so the first that a ray from outside enters is where it enters the hull. There are no cracks:
+//! balls and cones go on underneath what they touch.
 
 use glam::{DMat2, DVec2, DVec3};
 use phalanx_hand::Ball;
@@ -23,6 +24,7 @@ pub(crate) struct Hit {
     pub(crate) normal: DVec3,
 }
 
+#[derive(Debug, Clone)]
 pub(crate) enum Surface {
     Sphere(Ball),
     Cone(Cone),
@@ -50,6 +52,7 @@ fn enter_sphere(ball: &Ball, ray: &Ray) -> Option<Hit> {
 }
 
 /// The surface that touches two balls around: a cone between its circles of contact.
+#[derive(Debug, Clone)]
 pub(crate) struct Cone {
     center: DVec3,
     /// Unit vector towards the second ball.
@@ -104,6 +107,7 @@ impl Cone {
 }
 
 /// A triangle on a plane that touches three balls.
+#[derive(Debug, Clone)]
 pub(crate) struct Face {
     corner: DVec3,
     edges: [DVec3; 2],

@@ -1,0 +1,51 @@
+//! Random cameras and solids for the tests.
+
+use glam::{DVec2, DVec3};
+use phalanx_camera::{Camera, Distortion, Intrinsics};
+use phalanx_hand::{Ball, Primitive};
+use proptest::prelude::*;
+
+/// A camera 300 mm in front of the origin that looks at it along the world's z axis.
+pub(crate) fn camera(intrinsics: Intrinsics) -> Camera {
+    let position = DVec3::new(0.0, 0.0, -300.0);
+    Camera::look_at("front", intrinsics, position, DVec3::ZERO, DVec3::NEG_Y).expect("valid")
+}
+
+/// A lens that keeps to itself within a 120×90 image of focal length 110 px.
+pub(crate) fn lenses() -> impl Strategy<Value = Distortion> {
+    let bent = (-0.2..0.3f64, -0.05..0.05f64, -0.01..0.01f64, -0.01..0.01f64)
+        .prop_map(|(k1, k2, p1, p2)| Distortion { k1, k2, p1, p2, k3: 0.0 });
+    prop_oneof![Just(Distortion::NONE), bent]
+}
+
+pub(crate) fn balls(reach: f64) -> impl Strategy<Value = Ball> {
+    (-reach..reach, -reach..reach, -60.0..60.0, 3.0..30.0)
+        .prop_map(|(x, y, z, radius)| Ball::new(DVec3::new(x, y, z), radius))
+}
+
+pub(crate) fn unit_vectors() -> impl Strategy<Value = DVec3> {
+    (-1.0..1.0f64, 0.0..6.3f64).prop_map(|(height, turn)| {
+        (DVec2::from_angle(turn) * (1.0 - height * height).sqrt()).extend(height)
+    })
+}
+
+pub(crate) fn cylinders(reach: f64) -> impl Strategy<Value = Primitive> {
+    (balls(reach), balls(reach), unit_vectors(), 0.3..1.0f64).prop_map(
+        |(a, b, thin_axis, flatness)| Primitive::GeneralisedCylinder {
+            ends: [a, b],
+            thin_axis,
+            flatness,
+        },
+    )
+}
+
+/// Any solid with its balls within `reach` mm of the view's axis.
+pub(crate) fn solids(reach: f64) -> impl Strategy<Value = Primitive> {
+    prop_oneof![
+        balls(reach).prop_map(Primitive::Sphere),
+        (balls(reach), balls(reach)).prop_map(|(a, b)| Primitive::RoundCone([a, b])),
+        (balls(reach), balls(reach), balls(reach))
+            .prop_map(|(a, b, c)| Primitive::Wedge([a, b, c])),
+        cylinders(reach),
+    ]
+}
