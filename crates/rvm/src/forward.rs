@@ -66,10 +66,10 @@ impl ForwardSelection {
 }
 
 /// A Cholesky factorisation of G + λI pivoted by what each column would gain. Only the columns
-/// of G that are chosen are ever computed.
+/// of G that are chosen are ever computed, and of those only what the columns left over need: no
+/// diagonal, which is where λ stands.
 struct Search<'a> {
     columns: MatRef<'a, f64>,
-    lambda: f64,
     chosen: Vec<usize>,
     /// Columns of the factor, one per column chosen, p numbers each.
     factor: Vec<Vec<f64>>,
@@ -86,7 +86,6 @@ impl<'a> Search<'a> {
         let total: Vec<f64> = columns.col_iter().map(|c| c.squared_norm_l2() + lambda).collect();
         Self {
             columns,
-            lambda,
             chosen: Vec::new(),
             factor: Vec::new(),
             outside: total.clone(),
@@ -108,7 +107,6 @@ impl<'a> Search<'a> {
     fn add(&mut self, best: usize) {
         let chosen = self.columns.subcols(best, 1);
         let mut column = linalg::product(self.columns.transpose(), chosen).col_as_slice(0).to_vec();
-        column[best] += self.lambda;
         for earlier in &self.factor {
             linalg::axpy(&mut column, -earlier[best], earlier);
         }

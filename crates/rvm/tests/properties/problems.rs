@@ -30,7 +30,7 @@ pub(crate) const FITTERS: [(&str, Fitter); 9] = [
 
 /// Few enough cases that the whole crate's tests stay quick.
 pub(crate) fn few() -> ProptestConfig {
-    ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() }
+    ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() }
 }
 
 pub(crate) struct Source(Pcg64Mcg);
