@@ -1,7 +1,5 @@
 //! Contours that cannot be described are refused by name.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
-
 use phalanx_shape_context::{
     Chain, Error, MAX_POINTS, Orientation, ShapeContexts, hand_axis, mean_distance,
 };
@@ -56,42 +54,6 @@ fn shapes_without_a_direction() {
     stuck.extend([[5.0, 0.0], [5.0, 5.0], [0.0, 5.0]]);
     let tangent = Orientation::Tangent { chain: Chain::Open };
     assert_eq!(error(&stuck, tangent), Error::NoTangent { point: 0 });
-}
-
-/// Tangents of a circle are a quarter turn ahead of its radii; of a chain too, at its ends.
-#[test]
-fn tangents_run_round_the_area() {
-    let circle: Vec<[f64; 2]> = (0..40)
-        .map(|i| (TAU * f64::from(i) / 40.0).sin_cos())
-        .map(|(sin, cos)| [9.0 * cos, 9.0 * sin])
-        .collect();
-    let mut contexts = ShapeContexts::new();
-    for (chain, points, slack) in
-        [(Chain::Closed, &circle[..], 1e-9), (Chain::Open, &circle[..30], 0.5)]
-    {
-        let found = contexts.compute(points, Orientation::Tangent { chain }).expect("tangents");
-        for (i, p) in points.iter().enumerate() {
-            let [x, y] = found.axis(i);
-            let ahead = y.atan2(x) - p[1].atan2(p[0]) - FRAC_PI_2;
-            assert!(ahead.sin().abs() <= slack && ahead.cos() > 0.0, "{chain:?} {i}: {ahead}");
-        }
-    }
-}
-
-/// Where a contour runs out along a line one pixel wide and back, its tip's tangent is across it.
-#[test]
-fn the_tip_of_a_thin_line_has_a_tangent() {
-    let mut points: Vec<[f64; 2]> = (0..6).map(|y| [0.0, -f64::from(y)]).collect();
-    points.extend((0..5).rev().map(|y| [0.0, -f64::from(y)]));
-    points.extend([[1.0, 1.0], [1.0, 3.0], [-1.0, 3.0], [-1.0, 1.0]]);
-    let mut contexts = ShapeContexts::new();
-    let orientation = Orientation::Tangent { chain: Chain::Closed };
-    let forth = contexts.compute(&points, orientation).expect("tangents").axis(5);
-    assert_eq!(forth, [1.0, 0.0]);
-    points.reverse();
-    let tip = points.len() - 6;
-    let back = contexts.compute(&points, orientation).expect("tangents").axis(tip);
-    assert_eq!(back, [1.0, 0.0]);
 }
 
 proptest! {

@@ -112,6 +112,19 @@ fn a_point_of_known_place_falls_into_its_bin() {
     }
 }
 
+/// In a 3-4-5 triangle one side *is* the mean distance. At any size it belongs to the outer ring.
+#[test]
+fn a_distance_of_exactly_the_mean_goes_outwards() {
+    let mut contexts = ShapeContexts::new();
+    for size in 1..200 {
+        let size = f64::from(size) / 7.0;
+        let triangle = [[0.0, 0.0], [3.0 * size, 0.0], [0.0, 4.0 * size]];
+        let rows = contexts.compute(&triangle, Orientation::ImageAxes).expect("a shape");
+        let ring: f32 = rows.values()[3 * SECTORS..4 * SECTORS].iter().sum();
+        assert_eq!(ring, 0.5, "seen from the right angle, 3 is within the mean and 4 is not");
+    }
+}
+
 #[test]
 fn no_pair_of_pixels_is_on_a_sectors_edge() {
     // Slopes of displacements within a 120×90 picture against axes that join pixels of it.
