@@ -43,7 +43,8 @@ pub enum Stop {
 pub struct Bridges {
     /// Basis columns.
     pub kernel: Kernel,
-    /// ν/m > 0, the strength of the prior for each target. It bounds how many columns survive.
+    /// ν/m > 0, the strength of the prior for each target. It bounds how many columns survive;
+    /// the fewer are to be kept, the larger it should be.
     pub nu: f64,
     /// When columns are dropped.
     pub stop: Stop,
@@ -59,7 +60,7 @@ impl Default for Bridges {
     fn default() -> Self {
         Self {
             kernel: Kernel::Gaussian(Width::Scatter(1.0)),
-            nu: 0.03,
+            nu: 0.1,
             stop: Stop::Threshold(1e-3),
             lambda: 0.1,
             tolerance: 1e-6,
