@@ -4,9 +4,7 @@
 //!     cargo run --release -p phalanx-rvm --example sinc
 
 use phalanx_rvm::faer::Mat;
-use phalanx_rvm::{
-    Bridges, Fit, ForwardSelection, Kernel, KernelRidge, Result, Stop, Tipping, Width,
-};
+use phalanx_rvm::{Bridges, Fit, ForwardSelection, Kernel, KernelRidge, Result, Tipping, Width};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -28,9 +26,8 @@ fn main() -> Result<()> {
 
     let width = Width::Scatter(7.0);
     let kernel = Kernel::Gaussian(width);
-    let stop = Stop::Count(6);
     show("Tipping", &Tipping { kernel, ..Tipping::default() }.fit(x, y)?)?;
-    show("bridges", &Bridges { kernel, stop, ..Bridges::default() }.fit(x, y)?)?;
+    show("bridges", &Bridges { kernel, ..Bridges::default() }.fit(x, y)?)?;
     show(
         "forward",
         &ForwardSelection { kernel, count: 6, ..ForwardSelection::default() }.fit(x, y)?,

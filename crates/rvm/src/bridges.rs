@@ -9,7 +9,7 @@ use crate::{Error, Fit, Kernel, Report, Result, Trace, Width, check, linalg};
 /// Largest share of the columns that a step towards a count removes.
 const PRUNED_AT_ONCE: f64 = 0.15;
 /// Times that ν may be halved so that a count of columns survives.
-const HALVINGS: usize = 40;
+const HALVINGS: i32 = 40;
 
 /// When columns are dropped.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,7 +115,7 @@ impl Bridges {
         }
         trace.converged |= bridge.kept.is_empty();
         let solved = bridge.solve()?;
-        let nu = bridge.nu / targets.ncols() as f64;
+        let nu = self.nu * 0.5_f64.powi(halvings);
         Ok(Selection { kept: bridge.kept, nu, solved, trace })
     }
 
