@@ -22,7 +22,7 @@ pub(crate) fn print(rows: &[Row]) {
 
 fn table<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {
     let mut table = Table::new();
-    table.load_preset(presets::ASCII_MARKDOWN).set_header(HEADER);
+    table.load_style(presets::ASCII_MARKDOWN).set_header(HEADER);
     let mut block = None;
     for row in rows {
         let this = (row.views, row.data_set.as_str());
