@@ -12,9 +12,9 @@ pub struct Voting {
 }
 
 impl Default for Voting {
-    /// Eight neighbours.
+    /// Five neighbours.
     fn default() -> Self {
-        Self { neighbours: 8 }
+        Self { neighbours: 5 }
     }
 }
 

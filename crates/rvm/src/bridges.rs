@@ -19,7 +19,8 @@ pub enum Stop {
     /// depends on the kernel.
     Threshold(f64),
     /// Keep this many columns, at least 1: the weakest go, at most 15 % a step, until so many are
-    /// left. If ν is too large for that many to survive, it is halved until they do.
+    /// left. If ν is too large for all of them to survive, the descent is run again from all
+    /// columns at half of it, until they do.
     Count(usize),
 }
 
@@ -60,7 +61,7 @@ impl Default for Bridges {
     fn default() -> Self {
         Self {
             kernel: Kernel::Gaussian(Width::Scatter(1.0)),
-            nu: 0.1,
+            nu: 0.3,
             stop: Stop::Threshold(1e-3),
             lambda: 0.1,
             tolerance: 1e-6,
@@ -79,9 +80,29 @@ impl Bridges {
         Ok(Fit { model, report: Report::new(vec![selected.trace], Some(selected.nu)) })
     }
 
-    /// Runs the bridges over the columns of a design.
+    /// Runs the bridges over the columns of a design. Halving ν only after the descent would keep
+    /// columns that too strong a prior chose.
     pub(crate) fn select(&self, design: &Design<'_>) -> Result<Selection> {
         self.check(design.size())?;
+        let mut nu = self.nu;
+        let mut selection = self.descend(design, nu)?;
+        for _ in 0..HALVINGS {
+            if selection.trace.converged {
+                break;
+            }
+            nu /= 2.0;
+            match self.descend(design, nu) {
+                // So small a prior leaves the last columns to rounding: what the larger one
+                // kept is as good as it gets.
+                Err(Error::Singular { .. }) => break,
+                next => selection = next?,
+            }
+        }
+        Ok(selection)
+    }
+
+    /// From all columns down to those kept, at one ν/m.
+    fn descend(&self, design: &Design<'_>, nu: f64) -> Result<Selection> {
         let (gram, correlations) = (design.gram(), design.correlations());
         let targets = design.targets();
         let mut bridge = Bridge {
@@ -90,32 +111,20 @@ impl Bridges {
             gram,
             correlations,
             energy: linalg::inner(targets, targets),
-            nu: self.nu * targets.ncols() as f64,
+            nu: nu * targets.ncols() as f64,
         };
         let mut trace = Trace { converged: false, objective: Vec::new() };
-        let mut halvings = 0;
         while trace.objective.len() < self.max_iterations && !bridge.kept.is_empty() {
             let change = bridge.step()?;
             trace.objective.push(bridge.objective());
             let pruned = bridge.prune(self.stop);
-            if pruned || change > self.tolerance {
-                continue;
-            }
-            if bridge.all_survive() || matches!(self.stop, Stop::Threshold(_)) {
-                trace.converged = true;
+            if !pruned && change <= self.tolerance {
+                trace.converged = matches!(self.stop, Stop::Threshold(_)) || bridge.all_survive();
                 break;
             }
-            if halvings == HALVINGS {
-                break;
-            }
-            halvings += 1;
-            bridge.nu /= 2.0;
-            bridge.weights =
-                ridge(bridge.gram.as_ref(), bridge.correlations.as_ref(), self.lambda)?;
         }
         trace.converged |= bridge.kept.is_empty();
         let solved = bridge.solve()?;
-        let nu = self.nu * 0.5_f64.powi(halvings);
         Ok(Selection { kept: bridge.kept, nu, solved, trace })
     }
 

@@ -10,11 +10,14 @@ use crate::{Fit, Kernel, Report, Result, Trace, Width, check, linalg};
 const DEPENDENT: f64 = 1e-10;
 
 /// Orthogonal least squares (Chen, Cowan and Grant 1991), over all targets at once: each step adds
-/// the column that lowers the penalised squared error of all targets together the most.
+/// the column that lowers the penalised squared error of all targets together the most. Then
+/// sequential replacement (Miller 2002): each column in turn is taken out and the best one put in
+/// its place, until none changes.
 ///
 /// The error is ‖Y − AF‖² + λ‖A‖²; a small λ only keeps nearly dependent columns apart. The trace
-/// holds the error after each column. Fewer than `count` columns are chosen, and the fit said not
-/// to have converged, if the others depend on those chosen or the targets are already met.
+/// holds the error after each column and after each sweep of replacements. Fewer than `count`
+/// columns are chosen, and the fit said not to have converged, if the others depend on those
+/// chosen or the targets are already met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ForwardSelection {
@@ -24,11 +27,14 @@ pub struct ForwardSelection {
     pub count: usize,
     /// λ > 0.
     pub lambda: f64,
+    /// Most sweeps of replacements; 0 for forward selection alone.
+    pub sweeps: usize,
 }
 
 impl Default for ForwardSelection {
     fn default() -> Self {
-        Self { kernel: Kernel::Gaussian(Width::Scatter(1.0)), count: 10, lambda: 1e-3 }
+        let kernel = Kernel::Gaussian(Width::Scatter(1.0));
+        Self { kernel, count: 10, lambda: 1e-3, sweeps: 20 }
     }
 }
 
@@ -39,19 +45,19 @@ impl ForwardSelection {
         let problem = Problem::new(x, y)?;
         let design = Design::full(&problem, self.kernel)?;
         check::count(self.count, design.size())?;
+        let mut products = Products::new(&design);
         let mut search = Search::new(&design, self.lambda);
-        let mut error = linalg::inner(design.targets(), design.targets());
-        let enough = DEPENDENT * error;
+        let enough = DEPENDENT * search.error;
         let mut objective = Vec::with_capacity(self.count);
         while search.chosen.len() < self.count
             && let Some((best, gain)) = search.best()
             && gain > enough
         {
-            search.add(best);
-            error -= gain;
-            objective.push(error);
+            search.add(best, &mut products);
+            objective.push(search.error);
         }
         let mut kept = search.chosen;
+        self.replace(&design, &mut kept, &mut products, &mut objective);
         kept.sort_unstable();
         let columns =
             Mat::from_fn(design.columns.nrows(), kept.len(), |i, k| design.columns[(i, kept[k])]);
@@ -63,14 +69,66 @@ impl ForwardSelection {
         let model = solved.model(&design, &kept);
         Ok(Fit { model, report: Report::new(vec![trace], None) })
     }
+
+    /// Sweeps over the columns chosen until none is replaced.
+    fn replace(
+        &self,
+        design: &Design<'_>,
+        chosen: &mut [usize],
+        products: &mut Products<'_>,
+        objective: &mut Vec<f64>,
+    ) {
+        let start = Search::new(design, self.lambda);
+        for _ in 0..self.sweeps {
+            let (mut replaced, mut error) = (false, f64::INFINITY);
+            for place in 0..chosen.len() {
+                let mut search = start.clone();
+                for (other, &column) in chosen.iter().enumerate() {
+                    if other != place {
+                        search.add(column, products);
+                    }
+                }
+                let Some((best, gain)) = search.best() else { return };
+                error = search.error - gain;
+                replaced |= best != chosen[place];
+                chosen[place] = best;
+            }
+            if !replaced {
+                return;
+            }
+            objective.push(error);
+        }
+    }
 }
 
-/// A Cholesky factorisation of G + λI pivoted by what each column would gain. Only the columns
-/// of G that are chosen are ever computed, and of those only what the columns left over need: no
-/// diagonal, which is where λ stands.
-struct Search<'a> {
+/// Columns of G = FFᵀ without λ, each computed when it is first asked for: only those of columns
+/// that are chosen at some time ever are.
+struct Products<'a> {
     columns: MatRef<'a, f64>,
+    known: Vec<Option<Vec<f64>>>,
+}
+
+impl<'a> Products<'a> {
+    fn new(design: &'a Design<'_>) -> Self {
+        let columns = design.columns.as_ref();
+        Self { columns, known: vec![None; columns.ncols()] }
+    }
+
+    fn with(&mut self, column: usize) -> &[f64] {
+        self.known[column].get_or_insert_with(|| {
+            let one = self.columns.subcols(column, 1);
+            linalg::product(self.columns.transpose(), one).col_as_slice(0).to_vec()
+        })
+    }
+}
+
+/// A Cholesky factorisation of G + λI pivoted by what each column would gain. The diagonal, which
+/// is where λ stands, is kept apart.
+#[derive(Clone)]
+struct Search {
     chosen: Vec<usize>,
+    /// ‖Y − AF‖² + λ‖A‖² with the columns chosen.
+    error: f64,
     /// Columns of the factor, one per column chosen, p numbers each.
     factor: Vec<Vec<f64>>,
     /// Squared norm of each column, and what of it lies outside the columns chosen; 0 once chosen.
@@ -80,13 +138,13 @@ struct Search<'a> {
     correlations: Mat<f64>,
 }
 
-impl<'a> Search<'a> {
-    fn new(design: &'a Design<'_>, lambda: f64) -> Self {
+impl Search {
+    fn new(design: &Design<'_>, lambda: f64) -> Self {
         let columns = design.columns.as_ref();
         let total: Vec<f64> = columns.col_iter().map(|c| c.squared_norm_l2() + lambda).collect();
         Self {
-            columns,
             chosen: Vec::new(),
+            error: linalg::inner(design.targets(), design.targets()),
             factor: Vec::new(),
             outside: total.clone(),
             total,
@@ -96,32 +154,35 @@ impl<'a> Search<'a> {
 
     /// The column that lowers the error the most, and by how much.
     fn best(&self) -> Option<(usize, f64)> {
-        let gain = |k: usize| self.correlations.col(k).squared_norm_l2() / self.outside[k];
         (0..self.total.len())
             .filter(|&k| self.outside[k] > DEPENDENT * self.total[k])
-            .map(|k| (k, gain(k)))
+            .map(|k| (k, self.gain(k)))
             .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
     }
 
-    /// Chooses column `best` and takes it out of all the others and of the targets.
-    fn add(&mut self, best: usize) {
-        let chosen = self.columns.subcols(best, 1);
-        let mut column = linalg::product(self.columns.transpose(), chosen).col_as_slice(0).to_vec();
+    fn gain(&self, column: usize) -> f64 {
+        self.correlations.col(column).squared_norm_l2() / self.outside[column]
+    }
+
+    /// Chooses a column and takes it out of all the others and of the targets.
+    fn add(&mut self, chosen: usize, products: &mut Products<'_>) {
+        self.error -= self.gain(chosen);
+        let mut column = products.with(chosen).to_vec();
         for earlier in &self.factor {
-            linalg::axpy(&mut column, -earlier[best], earlier);
+            linalg::axpy(&mut column, -earlier[chosen], earlier);
         }
-        let pivot = self.outside[best].sqrt();
+        let pivot = self.outside[chosen].sqrt();
         for value in &mut column {
             *value /= pivot;
         }
         let projection: Vec<f64> =
-            self.correlations.col_as_slice(best).iter().map(|v| v / pivot).collect();
+            self.correlations.col_as_slice(chosen).iter().map(|v| v / pivot).collect();
         for (k, &value) in column.iter().enumerate() {
             self.outside[k] -= value * value;
             linalg::axpy(self.correlations.col_as_slice_mut(k), -value, &projection);
         }
-        self.outside[best] = 0.0;
-        self.chosen.push(best);
+        self.outside[chosen] = 0.0;
+        self.chosen.push(chosen);
         self.factor.push(column);
     }
 }
