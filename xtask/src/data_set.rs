@@ -36,11 +36,8 @@ impl DataSet {
     /// The angles that vary: those over which errors are averaged.
     pub(crate) fn active_angles(&self) -> Result<Vec<Dof>> {
         let varies = |dof: &Dof| self.poses.iter().any(|pose| pose[*dof] != self.poses[0][*dof]);
-        let active: Vec<Dof> = Dof::ALL
-            .into_iter()
-            .filter(|dof| dof.unit() == Unit::Angle)
-            .filter(varies)
-            .collect();
+        let active: Vec<Dof> =
+            Dof::ALL.into_iter().filter(|dof| dof.unit() == Unit::Angle).filter(varies).collect();
         if active.is_empty() {
             bail!("data set '{}': no angle varies", self.name);
         }

@@ -37,7 +37,8 @@ impl AngleErrors {
             runs.iter().map(|run| field(run)[dof]).sum::<f64>() / runs.len() as f64
         };
         let dofs = runs[0].dofs.clone();
-        let each = |field: fn(&Self) -> &[f64]| (0..dofs.len()).map(|d| mean_of(field, d)).collect();
+        let each =
+            |field: fn(&Self) -> &[f64]| (0..dofs.len()).map(|d| mean_of(field, d)).collect();
         Self { mean: each(|run| &run.mean), std: each(|run| &run.std), dofs }
     }
 

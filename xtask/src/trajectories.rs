@@ -1,8 +1,8 @@
 //! The two trajectories of the paper's § 3, made by rule: `open-close` and `complex`.
 //!
-//! A digit's posture is drawn from a coupled prior (DIP follows PIP by about two thirds, PIP and
-//! MCP flex together in part, abduction narrows as the knuckle bends) and reached along a
-//! minimum-jerk path (Flash and Hogan 1985), as people's fingers do.
+//! A digit's posture is drawn from a prior with the couplings of a real hand (DIP follows PIP by
+//! about two thirds, the thumb's outer joints bend together, abduction narrows as the knuckle
+//! bends) and reached along a minimum-jerk path (Flash and Hogan 1985), as people's fingers do.
 
 use phalanx_hand::{Digit, Dof, Pose, abduction_limit};
 use rand_core::{Rng, SeedableRng};
@@ -24,14 +24,14 @@ pub(crate) fn open_close() -> Vec<Pose> {
     const GRASP: [Posture; 5] = [
         [30.0, 28.0, 38.0, 42.0],
         [-2.0, 66.0, 82.0, 52.0],
-        [0.0, 70.0, 88.0, 57.0],
+        [1.5, 70.0, 88.0, 57.0],
         [-1.0, 72.0, 86.0, 56.0],
         [-2.0, 74.0, 78.0, 50.0],
     ];
     const OPEN: [Posture; 5] = [
         [2.0, -6.0, -4.0, -8.0],
         [3.0, -6.0, 3.0, 2.0],
-        [0.0, -5.0, 4.0, 2.0],
+        [-1.0, -5.0, 4.0, 2.0],
         [3.0, -5.0, 4.0, 2.0],
         [6.0, -7.0, 5.0, 3.0],
     ];
@@ -60,65 +60,87 @@ pub(crate) fn complex() -> Vec<Pose> {
     complex_take(COMPLEX_SEED)
 }
 
-/// A take in which the fingers move independently and in combination: beats of a quarter to
-/// half a second, in each of which one digit, two, or all of them go to a new posture.
+/// A take in which the fingers move independently and in combination: a few times a second one
+/// digit, two, or all five set out for a new posture, those that are still under way excepted, so
+/// that movements overlap.
 pub(crate) fn complex_take(seed: u64) -> Vec<Pose> {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
-    let mut now = [[0.0; 4]; 5];
-    let mut poses = Vec::with_capacity(COMPLEX_FRAMES);
-    while poses.len() < COMPLEX_FRAMES {
-        let next = next_postures(&now, &mut random);
-        let frames = 8 + (uniform(&mut random) * 7.0) as usize;
-        for frame in 0..frames {
-            let done = minimum_jerk((frame + 1) as f64 / frames as f64);
-            let mut pose = Pose::REST;
-            for (k, digit) in Digit::ALL.into_iter().enumerate() {
-                let joints = std::array::from_fn(|j| now[k][j] + done * (next[k][j] - now[k][j]));
-                set(&mut pose, digit, joints);
+    let mut movements = [Movement::default(); 5];
+    let mut next_start = 0.0;
+    (0..COMPLEX_FRAMES)
+        .map(|frame| {
+            let now = frame as f64;
+            if now >= next_start {
+                for digit in set_out(&mut random) {
+                    movements[digit as usize].redirect(now, digit, &mut random);
+                }
+                next_start = now + 3.0 + 5.0 * uniform(&mut random);
             }
-            poses.push(pose);
-        }
-        now = next;
-    }
-    poses.truncate(COMPLEX_FRAMES);
-    poses
+            let mut pose = Pose::REST;
+            for (digit, movement) in Digit::ALL.into_iter().zip(&movements) {
+                set(&mut pose, digit, movement.at(now));
+            }
+            pose
+        })
+        .collect()
 }
 
-/// The postures at the end of a beat: of every two beats one moves a single digit; the other
-/// half is shared by pairs of digits and by all five.
-fn next_postures(now: &[Posture; 5], random: &mut Pcg64Mcg) -> [Posture; 5] {
-    let mut next = *now;
-    let kind = uniform(random);
-    let first = (uniform(random) * 5.0) as usize;
-    let second = (first + 1 + (uniform(random) * 4.0) as usize) % 5;
-    for (k, digit) in Digit::ALL.into_iter().enumerate() {
-        let moves = match kind {
-            x if x < 0.5 => k == first,
-            x if x < 0.75 => k == first || k == second,
-            _ => true,
-        };
-        if moves {
-            next[k] = random_posture(digit, random);
+/// The digits that set out together: half of the time one alone, mostly a pair otherwise, and
+/// sometimes all five.
+fn set_out(random: &mut Pcg64Mcg) -> Vec<Digit> {
+    let first = (5.0 * uniform(random)) as usize;
+    let other = (first + 1 + (4.0 * uniform(random)) as usize) % 5;
+    match uniform(random) {
+        kind if kind < 0.5 => vec![Digit::ALL[first]],
+        kind if kind < 0.85 => vec![Digit::ALL[first], Digit::ALL[other]],
+        _ => Digit::ALL.to_vec(),
+    }
+}
+
+/// A digit's way from one posture to another.
+#[derive(Clone, Copy, Default)]
+struct Movement {
+    from: Posture,
+    to: Posture,
+    start: f64,
+    /// In frames; a quarter to half a second.
+    duration: f64,
+}
+
+impl Movement {
+    fn at(&self, frame: f64) -> Posture {
+        let done = minimum_jerk((frame - self.start) / self.duration.max(1.0));
+        std::array::from_fn(|joint| self.from[joint] + done * (self.to[joint] - self.from[joint]))
+    }
+
+    /// Sets out for a random posture, unless still under way.
+    fn redirect(&mut self, frame: f64, digit: Digit, random: &mut Pcg64Mcg) {
+        let (to, duration) = (random_posture(digit, random), 8.0 + 7.0 * uniform(random));
+        if frame >= self.start + self.duration {
+            *self = Self { from: self.to, to, start: frame, duration };
         }
     }
-    next
 }
 
 /// A posture of one digit from the coupled prior, degrees.
 fn random_posture(digit: Digit, random: &mut Pcg64Mcg) -> Posture {
     // The arcsine law: a digit at rest is more often nearly straight or nearly bent than halfway.
     let mut curl = || (std::f64::consts::FRAC_PI_2 * uniform(random)).sin().powi(2);
-    let (outer, own) = (curl(), curl());
-    let base = 0.5 * (outer + own);
+    let (outer, base) = (curl(), curl());
     let spread = 2.0 * uniform(random) - 1.0;
     let wobble = 2.0 * uniform(random) - 1.0;
     if digit == Digit::Thumb {
-        return [12.5 + 22.5 * spread, -8.0 + 46.0 * base, -4.0 + 54.0 * outer, -8.0 + 72.0 * outer + 6.0 * wobble];
+        return [
+            12.5 + 28.0 * spread,
+            -8.0 + 46.0 * base,
+            -4.0 + 54.0 * outer,
+            -8.0 + 72.0 * outer + 6.0 * wobble,
+        ];
     }
     let mcp = -10.0 + 95.0 * base;
     let pip = 102.0 * outer;
     let dip = (pip * 2.0 / 3.0 + 6.0 * wobble).clamp(0.0, 78.0);
-    [spread * 0.7 * abduction_limit(mcp.to_radians()).to_degrees(), mcp, pip, dip]
+    [spread * 0.9 * abduction_limit(mcp.to_radians()).to_degrees(), mcp, pip, dip]
 }
 
 fn set(pose: &mut Pose, digit: Digit, joints: Posture) {

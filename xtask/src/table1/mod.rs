@@ -93,13 +93,13 @@ fn evaluate(
     progress: &dyn Progress,
 ) -> Result<Vec<Row>> {
     let active = data_set.active_angles()?;
-    let contexts =
-        describe_poses(rig, hand, &data_set.poses, OrientationRule::HandAxis, progress)?;
+    let contexts = describe_poses(rig, hand, &data_set.poses, OrientationRule::HandAxis, progress)?;
     let single = rig.cameras.iter().position(|camera| camera.name == SINGLE_VIEW);
     let single = single.with_context(|| format!("the rig has no camera '{SINGLE_VIEW}'"))?;
     let views = [vec![single], (0..rig.cameras.len()).collect::<Vec<_>>()];
 
-    let runs: Vec<(usize, u64)> = (0..views.len()).flat_map(|v| (0..SPLITS).map(move |s| (v, s))).collect();
+    let runs: Vec<(usize, u64)> =
+        (0..views.len()).flat_map(|v| (0..SPLITS).map(move |s| (v, s))).collect();
     progress.begin("split, cluster, fit, test", runs.len());
     let trials: Vec<Result<Vec<(Job, Outcome)>>> = runs
         .par_iter()
@@ -160,24 +160,26 @@ fn rows(data_set: &str, views: usize, trials: &[Vec<(Job, Outcome)>]) -> Vec<Row
             (total + trials.len() / 2) / trials.len()
         };
         let (worst_dof, worst_deg) = errors.worst();
-        rows.extend(job.rows.iter().map(|&counts| Row {
-            views,
-            data_set: data_set.to_owned(),
-            kernels: job.method.name(),
-            counts,
-            selected_features: mean_count(|o| o.selected_features),
-            selected_samples: first
-                .selected_samples
-                .map(|_| mean_count(|o| o.selected_samples.unwrap_or_default())),
-            train_samples: first.train_samples,
-            test_samples: first.test_samples,
-            mae_deg: errors.mae(),
-            std_deg: errors.std(),
-            worst_deg,
-            worst_dof: worst_dof.name(),
-            mean_predictor_mae_deg: of_job().map(|o| o.mean_predictor_mae_deg).sum::<f64>()
-                / trials.len() as f64,
-            paper: paper::row(views, data_set, job.method.name()).filter(|_| counts == "paper"),
+        rows.extend(job.rows.iter().map(|&counts| {
+            Row {
+                views,
+                data_set: data_set.to_owned(),
+                kernels: job.method.name(),
+                counts,
+                selected_features: mean_count(|o| o.selected_features),
+                selected_samples: first
+                    .selected_samples
+                    .map(|_| mean_count(|o| o.selected_samples.unwrap_or_default())),
+                train_samples: first.train_samples,
+                test_samples: first.test_samples,
+                mae_deg: errors.mae(),
+                std_deg: errors.std(),
+                worst_deg,
+                worst_dof: worst_dof.name(),
+                mean_predictor_mae_deg: of_job().map(|o| o.mean_predictor_mae_deg).sum::<f64>()
+                    / trials.len() as f64,
+                paper: paper::row(views, data_set, job.method.name()).filter(|_| counts == "paper"),
+            }
         }));
     }
     rows

@@ -35,9 +35,7 @@ pub(crate) fn row(views: usize, data_set: &str, kernels: &str) -> Option<PaperRo
         (1, "complex", "lin" | "gauss") => row(None, None, None, middle_dip, &[]),
         (1, "complex", "both") => row(Some(2.9), Some(2.5), Some(9.9), middle_dip, all),
         (3, "open-close", "lin") => row(Some(5.4), None, Some(17.0), thumb_ip, &[]),
-        (3, "open-close", "gauss") => {
-            row(Some(3.6), Some(2.7), Some(14.9), thumb_ip, &["std_deg"])
-        }
+        (3, "open-close", "gauss") => row(Some(3.6), Some(2.7), Some(14.9), thumb_ip, &["std_deg"]),
         (3, "open-close", "both") => row(Some(1.6), None, Some(7.0), thumb_ip, &[]),
         (3, "complex", "lin" | "both") => {
             let mae = if kernels == "lin" { 2.5 } else { 2.4 };

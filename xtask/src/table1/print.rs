@@ -6,8 +6,18 @@ use super::paper::PaperRow;
 use super::{Row, SPLITS};
 
 const HEADER: [&str; 12] = [
-    "views", "data set", "kernels", "ftrs.", "smpls.", "avg.", "ratio", "STD", "worst", "which dof",
-    "paper avg. / STD / worst", "paper which",
+    "views",
+    "data set",
+    "kernels",
+    "ftrs.",
+    "smpls.",
+    "avg.",
+    "ratio",
+    "STD",
+    "worst",
+    "which dof",
+    "paper avg. / STD / worst",
+    "paper which",
 ];
 
 pub(crate) fn print(rows: &[Row]) {

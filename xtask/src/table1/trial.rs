@@ -93,9 +93,8 @@ impl Trial<'_> {
                 (train_x.nrows(), Some(train_x.ncols()), estimates)
             }
         };
-        let errors = |estimates: MatRef<'_, f64>| {
-            AngleErrors::new(estimates, test_y.as_ref(), self.active)
-        };
+        let errors =
+            |estimates: MatRef<'_, f64>| AngleErrors::new(estimates, test_y.as_ref(), self.active);
         Ok(Outcome {
             selected_features: features,
             selected_samples: samples,
