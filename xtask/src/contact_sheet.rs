@@ -5,8 +5,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use glam::DVec3;
 use image::{GrayImage, RgbImage, imageops};
 use phalanx::{Describer, Estimator, Progress, Training, Workspace, draw_overlay, draw_silhouette};
+use phalanx_camera::{Camera, Intrinsics, Rig};
+use phalanx_hand::{HandShape, Side};
 use phalanx_segmentation::{Cleanup, CropWindow, Silhouette, SkinModel, clean, downsample};
 use rayon::prelude::*;
 
@@ -41,10 +44,11 @@ struct Look {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let bar = progress::Bar::new();
-    let estimator = single_view_estimator(&bar)?;
+    let estimator = Framing { forearm_mm: 35.0 }.estimator(&bar)?;
     let digits = photographs(&arguments.data.join("digits"))?;
     let looks = look_at(&digits, &estimator, &bar);
     write_sheets(&arguments.out, "digits", &looks)?;
+    let estimator = Framing { forearm_mm: 240.0 }.estimator(&bar)?;
     let frames = photographs(&arguments.data.join("one-camera/frames"))?;
     let frames: Vec<(String, RgbImage)> = frames
         .into_iter()
@@ -66,11 +70,37 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-/// The top view alone, learnt from `complex`: photographs of a spread hand show its back or palm.
-fn single_view_estimator(progress: &dyn Progress) -> Result<Estimator> {
-    let rig = files::rig(None)?.select(&["top"])?;
-    let data_set = DataSet::stored("complex")?;
-    Ok(Training::default().run(&rig, &files::hand(None)?, &data_set.poses, progress)?)
+/// How the photographs of a set show an arm: a camera above it, as far away as the desk's.
+struct Framing {
+    /// What of the forearm is in the picture, mm.
+    forearm_mm: f64,
+}
+
+/// From the wrist to a little beyond the fingertips.
+const HAND_MM: f64 = 195.0;
+
+impl Framing {
+    /// The top camera of the desk, aimed and zoomed so that hand and forearm fill its width.
+    fn rig(&self) -> Result<Rig> {
+        let mut rig = files::rig(None)?.select(&["top"])?;
+        let top = &rig.cameras[0];
+        let middle = DVec3::new(0.0, 0.0, 0.5 * (HAND_MM - self.forearm_mm));
+        let position = DVec3::new(0.0, top.centre().y, middle.z);
+        let intrinsics = top.intrinsics;
+        let (width, height) = (intrinsics.width, intrinsics.height);
+        let focal = f64::from(width) * position.y / (HAND_MM + self.forearm_mm);
+        let intrinsics = Intrinsics::pinhole(width, height, focal);
+        rig.cameras[0] = Camera::look_at(&top.name, intrinsics, position, middle, DVec3::X)?;
+        Ok(rig)
+    }
+
+    /// An estimator for this view alone, learnt from `complex`. The photographs show palms of right
+    /// hands and backs of left ones, whose silhouettes are those of a left hand seen from above.
+    fn estimator(&self, progress: &dyn Progress) -> Result<Estimator> {
+        let hand = HandShape { side: Side::Left, ..files::hand(None)? };
+        let data_set = DataSet::stored("complex")?;
+        Ok(Training::default().run(&self.rig()?, &hand, &data_set.poses, progress)?)
+    }
 }
 
 /// All photographs below a folder with their names, in order.

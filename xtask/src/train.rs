@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::{Args, ValueEnum};
-use phalanx::Training;
+use phalanx::{Regressor, Training};
 use phalanx_camera::Rig;
 
 use crate::data_set::DataSet;
@@ -51,15 +51,17 @@ enum Kernels {
 }
 
 impl Kernels {
-    fn method(self) -> TableMethod {
-        match self {
+    /// The regressor, with the paper's counts where it selects.
+    fn regressor(self, counts: PaperCounts) -> Regressor {
+        let method = match self {
             Self::Lin => TableMethod::Lin,
             Self::Gauss => TableMethod::Gauss,
             Self::Both => TableMethod::Both,
             Self::Forward => TableMethod::Forward,
             Self::TippingLin => TableMethod::TippingLin,
-            Self::KernelRidge => TableMethod::KernelRidge,
-        }
+            Self::KernelRidge => return Training::default().regressor,
+        };
+        method.regressor(counts).expect("all but nearest neighbours have a regressor")
     }
 }
 
@@ -72,11 +74,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let hand = files::hand(arguments.hand.as_deref())?;
     let rig = views(&rig, &arguments.views)?;
     let counts = PaperCounts::paper(rig.cameras.len(), &data_set.name);
-    let regressor = arguments.kernels.method().regressor(counts);
-    let training = Training {
-        regressor: regressor.context("nearest neighbours fit nothing")?,
-        ..Training::default()
-    };
+    let regressor = arguments.kernels.regressor(counts);
+    let training = Training { regressor, ..Training::default() };
     let bar = progress::Bar::new();
     let estimator = training.run(&rig, &hand, &data_set.poses, &bar)?;
     drop(bar);
