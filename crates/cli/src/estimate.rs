@@ -1,6 +1,6 @@
 //! `phalanx estimate`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
@@ -57,14 +57,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         eprintln!("phalanx: {doubt}");
     }
     if arguments.json {
-        println!("{}", output::json(&estimator, &estimate)?);
+        output::print(&output::json(&estimator, &estimate)?)
     } else {
-        print!("{}", output::text(&estimate));
+        output::print(&output::text(&estimate))
     }
-    Ok(())
 }
 
-fn is_png(path: &std::path::Path) -> bool {
+fn is_png(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 

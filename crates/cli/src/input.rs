@@ -4,7 +4,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use anyhow::{Context, Result, bail};
-use image::{DynamicImage, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageReader, ImageResult, Limits};
 use phalanx::Estimator;
 
 /// The longest side of a picture that is decoded, px.
@@ -59,18 +59,29 @@ pub(crate) fn model(path: &Path) -> Result<Estimator> {
 
 /// Reads a picture, and of it the window if one is given.
 pub(crate) fn picture(path: &Path, crop: Option<Crop>) -> Result<DynamicImage> {
-    let read = || -> Result<DynamicImage> {
-        let mut reader = ImageReader::open(path)?.with_guessed_format()?;
-        let mut limits = Limits::default();
-        limits.max_image_width = Some(MOST_PIXELS_ASIDE);
-        limits.max_image_height = Some(MOST_PIXELS_ASIDE);
-        limits.max_alloc = Some(MOST_BYTES);
-        reader.limits(limits);
-        let image = reader.decode()?;
+    let read = || {
+        // An image error's text tells its cause already.
+        let image = decode(path).map_err(anyhow::Error::msg)?;
         match crop {
             Some(crop) => crop.of(&image),
             None => Ok(image),
         }
     };
     read().with_context(|| path.display().to_string())
+}
+
+/// Decodes a picture, the right way up: cameras that were turned say so in the file.
+fn decode(path: &Path) -> ImageResult<DynamicImage> {
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MOST_PIXELS_ASIDE);
+    limits.max_image_height = Some(MOST_PIXELS_ASIDE);
+    limits.max_alloc = Some(MOST_BYTES);
+    let mut reader = ImageReader::open(path)?.with_guessed_format()?;
+    reader.limits(limits.clone());
+    let mut decoder = reader.into_decoder()?;
+    limits.reserve(decoder.total_bytes())?;
+    let orientation = decoder.orientation()?;
+    let mut image = DynamicImage::from_decoder(decoder)?;
+    image.apply_orientation(orientation);
+    Ok(image)
 }

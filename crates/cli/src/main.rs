@@ -10,7 +10,7 @@ use clap::{Parser, Subcommand};
 
 /// Joint angles of a bare hand from pictures of calibrated cameras.
 ///
-/// Exit code 0: all done; 2: nothing done.
+/// Exit codes: 0, all done; 2, nothing done or wrong use.
 #[derive(Parser)]
 #[command(name = "phalanx", version)]
 struct Arguments {

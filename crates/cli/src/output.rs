@@ -1,6 +1,5 @@
 //! An estimate as text, JSON and picture.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
@@ -10,23 +9,46 @@ use image::{ImageFormat, RgbImage};
 use phalanx::{Estimate, Estimator};
 use phalanx_hand::{Dof, Unit};
 use phalanx_segmentation::{Evidence, Forearm};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// The JSON of an estimate: degrees and millimetres.
 #[derive(Serialize)]
 struct Report<'a> {
-    /// Each number of the pose by name.
-    pose: BTreeMap<&'static str, Figure>,
+    pose: Figures<'a>,
     /// 21 joints in the world.
     joints_mm: Vec<[f64; 3]>,
     views: Vec<View<'a>>,
 }
 
+/// Each number of the pose by name, in the pose's order.
+struct Figures<'a>(&'a Estimate);
+
+impl Serialize for Figures<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(Dof::ALL.map(|dof| (dof.name(), Figure::of(self.0, dof))))
+    }
+}
+
+/// One number of the pose.
 #[derive(Serialize)]
 struct Figure {
     value: f64,
     std: f64,
     unit: &'static str,
+}
+
+impl Figure {
+    fn of(estimate: &Estimate, dof: Dof) -> Self {
+        let unit = dof.unit();
+        Self {
+            value: unit.to_file(estimate.pose[dof]),
+            std: unit.to_file(estimate.std[dof.index()]),
+            unit: match unit {
+                Unit::Angle => "deg",
+                Unit::Length => "mm",
+            },
+        }
+    }
 }
 
 /// What was seen of the forearm in one view.
@@ -37,13 +59,8 @@ struct View<'a> {
     border_crossings: usize,
 }
 
-/// The estimate as JSON.
+/// The estimate as JSON, one object over several lines.
 pub(crate) fn json(estimator: &Estimator, estimate: &Estimate) -> Result<String> {
-    let figure = |dof: Dof| {
-        let (value, std) = (estimate.pose[dof], estimate.std[dof.index()]);
-        let (unit, symbol) = (dof.unit(), symbol(dof));
-        (dof.name(), Figure { value: unit.to_file(value), std: unit.to_file(std), unit: symbol })
-    };
     let views = views(estimator, estimate).map(|(camera, forearm)| View {
         camera,
         forearm: match forearm.evidence {
@@ -53,22 +70,19 @@ pub(crate) fn json(estimator: &Estimator, estimate: &Estimate) -> Result<String>
         border_crossings: forearm.crossings,
     });
     let report = Report {
-        pose: Dof::ALL.into_iter().map(figure).collect(),
+        pose: Figures(estimate),
         joints_mm: estimate.joints.iter().map(|joint| joint.to_array()).collect(),
         views: views.collect(),
     };
-    Ok(serde_json::to_string_pretty(&report)?)
+    Ok(serde_json::to_string_pretty(&report)? + "\n")
 }
 
 /// The estimate as a table for people.
 pub(crate) fn text(estimate: &Estimate) -> String {
     let mut text = String::new();
     for dof in Dof::ALL {
-        let unit = dof.unit();
-        let (value, std) = (estimate.pose[dof], estimate.std[dof.index()]);
-        let (value, std) = (unit.to_file(value), unit.to_file(std));
-        writeln!(text, "{dof:18} {value:8.1} ± {std:5.1} {}", symbol(dof))
-            .expect("writing to a string");
+        let Figure { value, std, unit } = Figure::of(estimate, dof);
+        writeln!(text, "{dof:18} {value:8.1} ± {std:5.1} {unit}").expect("writing to a string");
     }
     text
 }
@@ -95,11 +109,10 @@ fn views<'a>(
     names.zip(&estimate.forearms)
 }
 
-fn symbol(dof: Dof) -> &'static str {
-    match dof.unit() {
-        Unit::Angle => "deg",
-        Unit::Length => "mm",
-    }
+/// Writes a result to standard output.
+pub(crate) fn print(result: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(result.as_bytes()).and_then(|()| out.flush()).context("writing the result")
 }
 
 /// Writes a picture as PNG under a temporary name and renames it, so that it is never
@@ -110,12 +123,21 @@ pub(crate) fn write_png(path: &Path, picture: &RgbImage) -> Result<()> {
         _ => Path::new("."),
     };
     let write = || -> Result<()> {
-        let mut file = tempfile::NamedTempFile::new_in(folder)?;
         let mut png = std::io::Cursor::new(Vec::new());
         picture.write_to(&mut png, ImageFormat::Png)?;
+        let mut file = readable_by_others().tempfile_in(folder)?;
         file.write_all(png.get_ref())?;
         file.persist(path)?;
         Ok(())
     };
     write().with_context(|| format!("writing {}", path.display()))
+}
+
+/// Temporary files are private unless asked otherwise; results are not, as far as the umask
+/// allows.
+fn readable_by_others() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder
 }

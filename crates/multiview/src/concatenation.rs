@@ -43,10 +43,17 @@ impl Concatenation {
     /// Joins codebooks, one per view, in the order of the views.
     ///
     /// # Errors
-    /// No view.
+    /// No view, or a codebook with fewer centres than each shape context votes into.
     pub fn from_parts(codebooks: Vec<Codebook>, voting: Voting) -> Result<Self> {
         if codebooks.is_empty() {
             return Err(Error::NoViews);
+        }
+        let Voting { neighbours } = voting;
+        for (view, centres) in codebooks.iter().map(Codebook::len).enumerate() {
+            if !(1..=centres).contains(&neighbours) {
+                let reason = phalanx_codebook::Error::Neighbours { neighbours, centres };
+                return Err(Error::View { view, reason });
+            }
         }
         Ok(Self { codebooks, voting })
     }
@@ -95,7 +102,7 @@ impl Concatenation {
             (part, rest) = rest.split_at_mut(codebook.len());
             codebook
                 .soft_assign(contexts.as_ref(), self.voting, &mut scratch.0, part)
-                .map_err(|source| Error::View { view, source })?;
+                .map_err(|reason| Error::View { view, reason })?;
         }
         Ok(())
     }

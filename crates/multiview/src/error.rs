@@ -5,12 +5,12 @@
 #[non_exhaustive]
 pub enum Error {
     /// A codebook could not be fitted or applied.
-    #[error("view {view}: {source}")]
+    #[error("view {view}: {reason}")]
     View {
         /// The view, from 0.
         view: usize,
-        /// The reason.
-        source: phalanx_codebook::Error,
+        /// What its codebook says.
+        reason: phalanx_codebook::Error,
     },
     /// There is no view at all.
     #[error("there is no view")]
@@ -22,6 +22,18 @@ pub enum Error {
         expected: usize,
         /// Views given.
         found: usize,
+    },
+    /// A sample's view that is not a whole number of shape contexts.
+    #[error("sample {sample}, view {view}: {values} numbers do not make shape contexts of {dim}")]
+    Shape {
+        /// The sample, from 0.
+        sample: usize,
+        /// Its view, from 0.
+        view: usize,
+        /// How many numbers were given.
+        values: usize,
+        /// How many a shape context has.
+        dim: usize,
     },
     /// An output of the wrong length.
     #[error("the output has {found} numbers where the descriptor has {expected}")]

@@ -35,46 +35,61 @@ impl Vocabulary {
     /// in view v, `dim` numbers each, one after the other.
     ///
     /// # Errors
-    /// No view, views that differ in number between samples, centres that cannot be shared
-    /// evenly, or what clustering reports.
+    /// No view, views that differ in number between samples, a view that is not a whole number
+    /// of shape contexts, centres that cannot be shared evenly, or what clustering reports.
     pub fn fit<S: AsRef<[Vec<f32>]>>(&self, contexts: &[S], dim: usize) -> Result<Concatenation> {
-        let views = contexts.first().map_or(0, |sample| sample.as_ref().len());
-        if views == 0 {
-            return Err(Error::NoViews);
-        }
-        let odd = contexts.iter().map(|sample| sample.as_ref().len()).find(|&n| n != views);
-        if let Some(found) = odd {
-            return Err(Error::ViewCount { expected: views, found });
-        }
+        let views = check(contexts, dim)?;
         if !self.centres.is_multiple_of(views) {
             return Err(Error::UnevenShare { centres: self.centres, views });
         }
         let codebooks = (0..views).map(|view| {
-            let of_view: Vec<&[f32]> =
-                contexts.iter().map(|sample| sample.as_ref()[view].as_slice()).collect();
             let clustering = KMeans {
                 centres: self.centres / views,
                 seed: self.clustering.seed.wrapping_mul(1_000_003).wrapping_add(view as u64),
                 ..self.clustering
             };
-            let fit = clustering.fit(&evenly_spaced(&of_view, dim, self.most_samples), dim);
-            fit.map(|fit| fit.codebook).map_err(|source| Error::View { view, source })
+            let fit = clustering.fit(&evenly_spaced(contexts, view, dim, self.most_samples), dim);
+            fit.map(|fit| fit.codebook).map_err(|reason| Error::View { view, reason })
         });
         Concatenation::from_parts(codebooks.collect::<Result<_>>()?, self.voting)
     }
 }
 
-/// At most `most` of the vectors of all samples, evenly spaced.
-fn evenly_spaced(samples: &[&[f32]], dim: usize, most: usize) -> Vec<f32> {
-    let vectors = || samples.iter().flat_map(|sample| sample.chunks_exact(dim));
-    let total = samples.iter().map(|sample| sample.len() / dim).sum::<usize>();
+/// The number of views, once every sample has as many and each is whole shape contexts.
+fn check<S: AsRef<[Vec<f32>]>>(contexts: &[S], dim: usize) -> Result<usize> {
+    let views = contexts.first().map_or(0, |sample| sample.as_ref().len());
+    if views == 0 {
+        return Err(Error::NoViews);
+    }
+    for (sample, of_views) in contexts.iter().map(AsRef::as_ref).enumerate() {
+        if of_views.len() != views {
+            return Err(Error::ViewCount { expected: views, found: of_views.len() });
+        }
+        for (view, values) in of_views.iter().map(Vec::len).enumerate() {
+            if dim == 0 || !values.is_multiple_of(dim) {
+                return Err(Error::Shape { sample, view, values, dim });
+            }
+        }
+    }
+    Ok(views)
+}
+
+/// At most `most` of the shape contexts of one view of all samples, evenly spaced.
+fn evenly_spaced<S: AsRef<[Vec<f32>]>>(
+    contexts: &[S],
+    view: usize,
+    dim: usize,
+    most: usize,
+) -> Vec<f32> {
+    let of_view = || contexts.iter().map(|sample| &sample.as_ref()[view]);
+    let total = of_view().map(Vec::len).sum::<usize>() / dim;
     let kept = total.min(most);
     let mut spaced = Vec::with_capacity(kept * dim);
-    let mut next = 0;
-    for (k, vector) in vectors().enumerate() {
-        if next < kept && k == next * total / kept {
-            spaced.extend_from_slice(vector);
-            next += 1;
+    let mut taken = 0;
+    for (k, context) in of_view().flat_map(|values| values.chunks_exact(dim)).enumerate() {
+        if taken < kept && k == taken * total / kept {
+            spaced.extend_from_slice(context);
+            taken += 1;
         }
     }
     spaced

@@ -3,7 +3,7 @@
 use image::GrayImage;
 use phalanx_camera::{Camera, Intrinsics};
 use phalanx_segmentation::{
-    Cleanup, CropWindow, Silhouette, clean_into, downsample, downsample_mask,
+    Cleanup, CropWindow, MIN_SIDE, Silhouette, clean_into, downsample, downsample_mask,
 };
 use phalanx_shape_context::{Chain, Descriptors, Orientation, ShapeContexts};
 use serde::{Deserialize, Serialize};
@@ -54,7 +54,7 @@ impl OrientationRule {
 pub fn working_camera(camera: &Camera) -> Result<Camera> {
     let Intrinsics { width, height, .. } = camera.intrinsics;
     let window = CropWindow::centred((width, height), WORKING_SIZE)
-        .map_err(|source| Error::Silhouette { camera: camera.name.clone(), source })?;
+        .map_err(|reason| Error::Silhouette { camera: camera.name.clone(), reason })?;
     let cropped = camera.intrinsics.cropped(window.x, window.y, window.width, window.height)?;
     Ok(camera.with_intrinsics(cropped.resized(WORKING_SIZE.0, WORKING_SIZE.1)))
 }
@@ -72,12 +72,18 @@ impl Describer {
     /// shape, segmented, cleaned, traced. After an error its content means nothing.
     ///
     /// # Errors
-    /// No hand, no contour, no forearm: as [`phalanx_segmentation::Error`] names them.
+    /// A side shorter than [`MIN_SIDE`], no hand, no contour, no forearm: as
+    /// [`phalanx_segmentation::Error`] names them.
     pub fn silhouette(
         &mut self,
         picture: Picture<'_>,
         silhouette: &mut Silhouette,
     ) -> Result<(), phalanx_segmentation::Error> {
+        let (width, height) = picture.size();
+        if width.min(height) < MIN_SIDE {
+            let minimum = MIN_SIDE;
+            return Err(phalanx_segmentation::Error::ImageTooSmall { width, height, minimum });
+        }
         let (width, height) = WORKING_SIZE;
         let mask = match picture {
             Picture::Mask(mask) => downsample_mask(mask, width, height)?,

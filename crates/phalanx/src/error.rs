@@ -5,36 +5,36 @@
 #[non_exhaustive]
 pub enum Error {
     /// No silhouette could be had from a camera's picture.
-    #[error("camera '{camera}': {source}")]
+    #[error("camera '{camera}': {reason}")]
     Silhouette {
         /// The camera's name.
         camera: String,
         /// The reason.
-        source: phalanx_segmentation::Error,
+        reason: phalanx_segmentation::Error,
     },
     /// A silhouette has no shape contexts.
-    #[error("camera '{camera}': {source}")]
+    #[error("camera '{camera}': {reason}")]
     ShapeContext {
         /// The camera's name.
         camera: String,
         /// The reason.
-        source: phalanx_shape_context::Error,
+        reason: phalanx_shape_context::Error,
     },
     /// A training pose that some camera cannot see whole enough to be described.
-    #[error("training pose {pose}: {source}")]
+    #[error("training pose {pose}: {reason}")]
     TrainingPose {
         /// Its position in the list of poses, from 0.
         pose: usize,
         /// The reason.
-        source: Box<Error>,
+        reason: Box<Error>,
     },
     /// A hand could not be drawn.
-    #[error("camera '{camera}': {source}")]
+    #[error("camera '{camera}': {reason}")]
     Render {
         /// The camera's name.
         camera: String,
         /// The reason.
-        source: phalanx_render::Error,
+        reason: phalanx_render::Error,
     },
     /// The rig is unusable.
     #[error(transparent)]
@@ -48,6 +48,36 @@ pub enum Error {
     /// The regressor could not be fitted or does not fit the descriptor.
     #[error(transparent)]
     Regression(#[from] phalanx_rvm::Error),
+    /// A codebook of something other than shape contexts.
+    #[error(
+        "camera '{camera}': its codebook is of {found} bins where shape contexts have {expected}"
+    )]
+    CodebookBins {
+        /// The camera's name.
+        camera: String,
+        /// The codebook's bins.
+        found: usize,
+        /// The bins of a shape context.
+        expected: usize,
+    },
+    /// A part of an estimator that does not fit the others.
+    #[error("{found} {part} where there should be {expected}")]
+    Mismatch {
+        /// What there are too few or too many of.
+        part: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many the other parts ask for.
+        expected: usize,
+    },
+    /// A regressor whose arithmetic overflows.
+    #[error("the regressor predicts {value} for {dof}")]
+    Overflow {
+        /// The number of the pose, by name.
+        dof: &'static str,
+        /// What was predicted for it, or its standard deviation.
+        value: f64,
+    },
     /// No pose to learn from, or only one.
     #[error("{found} training poses are too few: at least 2 are needed")]
     TooFewPoses {
@@ -55,7 +85,10 @@ pub enum Error {
         found: usize,
     },
     /// Not one picture per camera.
-    #[error("{found} pictures for {} cameras ({})", cameras.len(), cameras.join(", "))]
+    #[error(
+        "expected one picture per camera, {} ({}), found {found}",
+        cameras.len(), cameras.join(", ")
+    )]
     PictureCount {
         /// The model's cameras in the order in which pictures are expected.
         cameras: Vec<String>,
@@ -88,7 +121,9 @@ pub enum Error {
         known: u32,
     },
     /// A model file that is shorter or longer than its header says.
-    #[error("the model file is truncated or has been added to: {found} bytes where its header says {expected}")]
+    #[error(
+        "the model file is truncated or has been added to: {found} bytes where its header says {expected}"
+    )]
     ModelLength {
         /// Bytes announced.
         expected: u64,

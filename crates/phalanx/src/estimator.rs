@@ -36,8 +36,14 @@ pub struct Estimate {
 /// Memory that one estimate after another uses again.
 #[derive(Debug, Default)]
 pub struct Workspace {
-    describer: Describer,
     silhouettes: Vec<Silhouette>,
+    memory: Memory,
+}
+
+/// What a [`Workspace`] keeps besides the silhouettes.
+#[derive(Debug, Default)]
+struct Memory {
+    describer: Describer,
     contexts: Vec<Vec<f32>>,
     views: phalanx_multiview::Scratch,
     x: Vec<f64>,
@@ -45,7 +51,8 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// The silhouettes of the last estimate from pictures, in the order of the cameras.
+    /// The silhouettes of the last estimate from pictures, in the order of the cameras; of no
+    /// meaning if it failed.
     pub fn silhouettes(&self) -> &[Silhouette] {
         &self.silhouettes
     }
@@ -65,17 +72,20 @@ impl Estimator {
     ) -> Result<Self> {
         rig.validate()?;
         hand.validate()?;
-        let mismatch = |what: &str, found: usize, expected: usize| Error::ModelContent {
-            reason: format!("{found} {what} where there should be {expected}"),
-        };
-        if views.views() != rig.cameras.len() {
-            return Err(mismatch("codebooks", views.views(), rig.cameras.len()));
+        for (part, found, expected) in [
+            ("codebooks", views.views(), rig.cameras.len()),
+            ("regressor inputs", model.inputs(), views.dim()),
+            ("regressor outputs", model.outputs(), Dof::COUNT),
+        ] {
+            if found != expected {
+                return Err(Error::Mismatch { part, found, expected });
+            }
         }
-        if model.inputs() != views.dim() {
-            return Err(mismatch("regressor inputs", model.inputs(), views.dim()));
-        }
-        if model.outputs() != Dof::COUNT {
-            return Err(mismatch("regressor outputs", model.outputs(), Dof::COUNT));
+        for (camera, codebook) in rig.cameras.iter().zip(views.codebooks()) {
+            let (found, expected) = (codebook.dim(), phalanx_shape_context::BINS);
+            if found != expected {
+                return Err(Error::CodebookBins { camera: camera.name.clone(), found, expected });
+            }
         }
         Ok(Self { rig, hand, orientation, views, model })
     }
@@ -110,20 +120,22 @@ impl Estimator {
     /// # Errors
     /// Another number of pictures, a picture of another shape than its camera's image, or no
     /// hand in one.
-    pub fn estimate(&self, pictures: &[Picture<'_>], workspace: &mut Workspace) -> Result<Estimate> {
+    pub fn estimate(
+        &self,
+        pictures: &[Picture<'_>],
+        workspace: &mut Workspace,
+    ) -> Result<Estimate> {
         self.check_count(pictures.len())?;
-        let mut silhouettes = std::mem::take(&mut workspace.silhouettes);
+        let Workspace { silhouettes, memory } = workspace;
         silhouettes.resize_with(pictures.len(), Silhouette::default);
-        for ((view, &picture), silhouette) in pictures.iter().enumerate().zip(&mut silhouettes) {
+        for ((view, &picture), silhouette) in pictures.iter().enumerate().zip(&mut *silhouettes) {
             self.check_shape(view, picture.size())?;
-            workspace
+            memory
                 .describer
                 .silhouette(picture, silhouette)
-                .map_err(|source| Error::Silhouette { camera: self.camera(view), source })?;
+                .map_err(|reason| Error::Silhouette { camera: self.camera(view), reason })?;
         }
-        let estimate = self.estimate_silhouettes(&silhouettes, workspace);
-        workspace.silhouettes = silhouettes;
-        estimate
+        self.look_at(silhouettes, memory)
     }
 
     /// Estimates the pose from one silhouette per camera, of any size, in the order of the rig's
@@ -137,17 +149,21 @@ impl Estimator {
         workspace: &mut Workspace,
     ) -> Result<Estimate> {
         self.check_count(silhouettes.len())?;
-        workspace.contexts.resize_with(silhouettes.len(), Vec::new);
-        for (view, silhouette) in silhouettes.iter().enumerate() {
-            let contexts = workspace
-                .describer
+        self.look_at(silhouettes, &mut workspace.memory)
+    }
+
+    /// The estimate from one silhouette per camera.
+    fn look_at(&self, silhouettes: &[Silhouette], memory: &mut Memory) -> Result<Estimate> {
+        let Memory { describer, contexts, .. } = memory;
+        contexts.resize_with(silhouettes.len(), Vec::new);
+        for ((view, silhouette), kept) in silhouettes.iter().enumerate().zip(contexts) {
+            let contexts = describer
                 .contexts(silhouette, self.orientation)
-                .map_err(|source| Error::ShapeContext { camera: self.camera(view), source })?;
-            let kept = &mut workspace.contexts[view];
+                .map_err(|reason| Error::ShapeContext { camera: self.camera(view), reason })?;
             kept.clear();
             kept.extend_from_slice(contexts.values());
         }
-        let (pose, std) = self.regress(workspace)?;
+        let (pose, std) = self.regress(memory)?;
         let joints = self.hand.pose(&pose, &self.rig.volume.rest_frame()).joints;
         let forearms = silhouettes.iter().map(|silhouette| silhouette.forearm).collect();
         Ok(Estimate { pose, std, joints, forearms })
@@ -176,11 +192,18 @@ impl Estimator {
         Err(Error::PictureShape { camera: self.camera(view), found, expected })
     }
 
-    fn regress(&self, workspace: &mut Workspace) -> Result<(Pose, [f64; Dof::COUNT])> {
-        workspace.x.resize(self.views.dim(), 0.0);
-        self.views.describe(&workspace.contexts, &mut workspace.views, &mut workspace.x)?;
+    fn regress(&self, memory: &mut Memory) -> Result<(Pose, [f64; Dof::COUNT])> {
+        let Memory { contexts, views, x, regression, .. } = memory;
+        x.resize(self.views.dim(), 0.0);
+        self.views.describe(contexts, views, x)?;
         let (mut pose, mut std) = (Pose::REST, [0.0; Dof::COUNT]);
-        self.model.predict_into(&workspace.x, &mut workspace.regression, &mut pose.0, &mut std)?;
+        self.model.predict_into(x, regression, &mut pose.0, &mut std)?;
+        for dof in Dof::ALL {
+            let numbers = [pose[dof], std[dof.index()]];
+            if let Some(&value) = numbers.iter().find(|number| !number.is_finite()) {
+                return Err(Error::Overflow { dof: dof.name(), value });
+            }
+        }
         Ok((pose, std))
     }
 }

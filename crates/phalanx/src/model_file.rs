@@ -8,6 +8,8 @@
 //! | 20–23 | CRC-32 of the payload, little-endian `u32` |
 //! | 24– | payload |
 
+use std::borrow::Cow;
+
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
 use phalanx_multiview::Concatenation;
@@ -22,12 +24,12 @@ const HEADER: usize = 24;
 
 /// What the payload holds.
 #[derive(Serialize, Deserialize)]
-struct Payload {
-    rig: Rig,
-    hand: HandShape,
+struct Payload<'a> {
+    rig: Cow<'a, Rig>,
+    hand: Cow<'a, HandShape>,
     orientation: OrientationRule,
-    views: Concatenation,
-    model: ModelParts,
+    views: Cow<'a, Concatenation>,
+    model: Cow<'a, ModelParts>,
 }
 
 impl Estimator {
@@ -37,14 +39,13 @@ impl Estimator {
     /// None that a fitted estimator can cause; encoding is fallible in form.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
         let payload = Payload {
-            rig: self.rig().clone(),
-            hand: self.hand().clone(),
+            rig: Cow::Borrowed(self.rig()),
+            hand: Cow::Borrowed(self.hand()),
             orientation: self.orientation(),
-            views: self.views().clone(),
-            model: self.model().clone().into_parts(),
+            views: Cow::Borrowed(self.views()),
+            model: Cow::Borrowed(self.model().parts()),
         };
-        let content = |error: postcard::Error| Error::ModelContent { reason: error.to_string() };
-        let payload = postcard::to_stdvec(&payload).map_err(content)?;
+        let payload = postcard::to_stdvec(&payload).map_err(|error| content(&error))?;
         let mut bytes = Vec::with_capacity(HEADER + payload.len());
         bytes.extend(MARK);
         bytes.extend(FORMAT.to_le_bytes());
@@ -61,15 +62,26 @@ impl Estimator {
     /// fit each other.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let payload = checked_payload(bytes)?;
-        let content = |error: postcard::Error| Error::ModelContent { reason: error.to_string() };
-        let (payload, rest) = postcard::take_from_bytes::<Payload>(payload).map_err(content)?;
+        let (payload, rest) =
+            postcard::take_from_bytes::<Payload<'_>>(payload).map_err(|error| content(&error))?;
         if !rest.is_empty() {
             let reason = format!("{} bytes are left over", rest.len());
             return Err(Error::ModelContent { reason });
         }
-        let model = Model::from_parts(payload.model)?;
-        Self::from_parts(payload.rig, payload.hand, payload.orientation, payload.views, model)
+        let Payload { rig, hand, orientation, views, model } = payload;
+        let model = Model::from_parts(model.into_owned())?;
+        Self::from_parts(
+            rig.into_owned(),
+            hand.into_owned(),
+            orientation,
+            views.into_owned(),
+            model,
+        )
     }
+}
+
+fn content(error: &postcard::Error) -> Error {
+    Error::ModelContent { reason: error.to_string() }
 }
 
 /// The payload, once the header vouches for it.

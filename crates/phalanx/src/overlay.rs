@@ -13,9 +13,10 @@ const ESTIMATED: Rgb<u8> = Rgb([230, 40, 160]);
 /// Draws the contour of the observed silhouette (green), its hand axis (yellow) and the contour
 /// of the estimated hand (magenta) over a picture.
 ///
-/// `window` is the part of `canvas` that the observed silhouette shows. Where the hand is in space is not estimated from descriptors, which are blind to
-/// shift, scale and roll: the estimated contour is brought onto the observed one by the similarity
-/// that matches hand axes, centroids and areas.
+/// `window` is the part of `canvas` that the observed silhouette shows. Where the hand is in
+/// space is not estimated from descriptors, which are blind to shift, scale and roll: the
+/// estimated contour is brought onto the observed one by the similarity that matches hand axes,
+/// centroids and areas.
 pub fn draw_overlay(
     canvas: &mut RgbImage,
     window: CropWindow,

@@ -37,7 +37,10 @@ pub enum Segmenter {
 
 impl Segmenter {
     /// The raw mask of a picture at the working size.
-    pub(crate) fn segment(&self, image: &RgbImage) -> Result<GrayImage, phalanx_segmentation::Error> {
+    pub(crate) fn segment(
+        &self,
+        image: &RgbImage,
+    ) -> Result<GrayImage, phalanx_segmentation::Error> {
         match self {
             Self::Skin(model) => Ok(model.segment(image)),
             Self::Background(model) => model.segment(image),

@@ -8,7 +8,9 @@ use phalanx_render::Renderer;
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
-use crate::{Describer, Error, OrientationRule, Picture, Progress, Result, WORKING_SIZE, working_camera};
+use crate::{
+    Describer, Error, OrientationRule, Picture, Progress, Result, WORKING_SIZE, working_camera,
+};
 
 /// The shape contexts of one pose: for each camera, its contour points' histograms one after the
 /// other.
@@ -43,7 +45,7 @@ pub fn describe_poses(
         )
         .collect();
     let name_pose = |(pose, result): (usize, Result<PoseContexts>)| {
-        result.map_err(|source| Error::TrainingPose { pose, source: Box::new(source) })
+        result.map_err(|reason| Error::TrainingPose { pose, reason: Box::new(reason) })
     };
     described.into_iter().enumerate().map(name_pose).collect()
 }
@@ -62,7 +64,7 @@ pub fn draw_silhouette(
     let solids = hand.pose(pose, rest).primitives;
     Renderer::new(&camera)
         .and_then(|mut renderer| renderer.silhouette(&solids))
-        .map_err(|source| Error::Render { camera: camera.name.clone(), source })
+        .map_err(|reason| Error::Render { camera: camera.name.clone(), reason })
 }
 
 /// Draws and describes in one camera's memory.
@@ -77,7 +79,7 @@ struct ViewDescriber<'a> {
 
 impl<'a> ViewDescriber<'a> {
     fn new(camera: &'a Camera) -> Result<Self> {
-        let name_camera = |source| Error::Render { camera: camera.name.clone(), source };
+        let name_camera = |reason| Error::Render { camera: camera.name.clone(), reason };
         Ok(Self {
             name: &camera.name,
             renderer: Renderer::new(camera).map_err(name_camera)?,
@@ -95,13 +97,13 @@ impl<'a> ViewDescriber<'a> {
         let camera = || self.name.to_owned();
         self.renderer
             .silhouette_into(solids, &mut self.drawn)
-            .map_err(|source| Error::Render { camera: camera(), source })?;
+            .map_err(|reason| Error::Render { camera: camera(), reason })?;
         self.describer
             .silhouette(Picture::Mask(&self.drawn), &mut self.silhouette)
-            .map_err(|source| Error::Silhouette { camera: camera(), source })?;
+            .map_err(|reason| Error::Silhouette { camera: camera(), reason })?;
         self.describer
             .contexts(&self.silhouette, rule)
             .map(|contexts| contexts.values().to_vec())
-            .map_err(|source| Error::ShapeContext { camera: camera(), source })
+            .map_err(|reason| Error::ShapeContext { camera: camera(), reason })
     }
 }

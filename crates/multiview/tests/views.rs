@@ -1,0 +1,262 @@
+//! Joining views: properties, refusals, storage and threads.
+
+use phalanx_codebook::{Codebook, KMeans, Voting};
+use phalanx_multiview::{Concatenation, Error, Scratch, Vocabulary};
+use proptest::prelude::*;
+use proptest::test_runner::Config;
+
+const BINS: usize = 6;
+
+/// A sample: each view's histograms, one after the other.
+type Views = Vec<Vec<f32>>;
+
+fn histogram() -> impl Strategy<Value = Vec<f32>> {
+    prop::collection::vec(0.01_f32..1.0, BINS).prop_map(|heights| {
+        let sum: f32 = heights.iter().sum();
+        heights.iter().map(|h| h / sum).collect()
+    })
+}
+
+fn view(histograms: std::ops::Range<usize>) -> impl Strategy<Value = Vec<f32>> {
+    prop::collection::vec(histogram(), histograms).prop_map(|all| all.concat())
+}
+
+/// Codebooks of 4, 5, … centres, and a sample of as many views.
+fn joined_and_sample() -> impl Strategy<Value = (Concatenation, Views)> {
+    (1_usize..4).prop_flat_map(|views| {
+        let codebooks: Vec<_> = (0..views)
+            .map(|v| {
+                view(4 + v..5 + v)
+                    .prop_map(|centres| Codebook::from_parts(centres, BINS, 0.1).unwrap())
+            })
+            .collect();
+        let joined = (codebooks, 1_usize..5).prop_map(|(codebooks, neighbours)| {
+            Concatenation::from_parts(codebooks, Voting { neighbours }).unwrap()
+        });
+        (joined, prop::collection::vec(view(1..12), views))
+    })
+}
+
+fn describe(joined: &Concatenation, sample: &Views) -> Vec<f64> {
+    let mut x = vec![f64::NAN; joined.dim()];
+    joined.describe(sample, &mut Scratch::default(), &mut x).unwrap();
+    x
+}
+
+/// The parts of x, view by view.
+fn parts<'a>(joined: &Concatenation, mut x: &'a [f64]) -> Vec<&'a [f64]> {
+    let split = joined.codebooks().iter().map(|codebook| {
+        let (part, rest) = x.split_at(codebook.len());
+        x = rest;
+        part
+    });
+    split.collect()
+}
+
+proptest! {
+    #![proptest_config(Config { cases: 64, failure_persistence: None, ..Config::default() })]
+
+    #[test]
+    fn each_view_is_a_histogram((joined, sample) in joined_and_sample()) {
+        let x = describe(&joined, &sample);
+        for part in parts(&joined, &x) {
+            prop_assert!(part.iter().all(|&votes| votes >= 0.0));
+            prop_assert!((part.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn each_part_is_that_views_own_votes((joined, sample) in joined_and_sample()) {
+        let x = describe(&joined, &sample);
+        for ((part, codebook), contexts) in
+            parts(&joined, &x).into_iter().zip(joined.codebooks()).zip(&sample)
+        {
+            let mut votes = vec![0.0; codebook.len()];
+            let mut scratch = phalanx_codebook::Scratch::default();
+            codebook.soft_assign(contexts, joined.voting(), &mut scratch, &mut votes).unwrap();
+            prop_assert_eq!(part, votes.as_slice());
+        }
+    }
+
+    #[test]
+    fn the_order_of_contour_points_does_not_matter((joined, sample) in joined_and_sample()) {
+        let reversed: Views = sample
+            .iter()
+            .map(|view| view.chunks_exact(BINS).rev().flatten().copied().collect())
+            .collect();
+        for (a, b) in describe(&joined, &sample).iter().zip(describe(&joined, &reversed)) {
+            prop_assert!((a - b).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn views_in_another_order_give_the_parts_in_that_order(
+        (joined, sample) in joined_and_sample()
+    ) {
+        let mut codebooks = joined.codebooks().to_vec();
+        codebooks.reverse();
+        let turned = Concatenation::from_parts(codebooks, joined.voting()).unwrap();
+        let backwards: Views = sample.iter().rev().cloned().collect();
+        let (x, y) = (describe(&joined, &sample), describe(&turned, &backwards));
+        let mut expected = parts(&joined, &x);
+        expected.reverse();
+        prop_assert_eq!(parts(&turned, &y), expected);
+    }
+
+    #[test]
+    fn a_used_scratch_changes_nothing(
+        (joined, sample) in joined_and_sample(),
+        (other, others) in joined_and_sample(),
+    ) {
+        let mut scratch = Scratch::default();
+        other.describe(&others, &mut scratch, &mut vec![0.0; other.dim()]).unwrap();
+        let mut x = vec![0.0; joined.dim()];
+        joined.describe(&sample, &mut scratch, &mut x).unwrap();
+        prop_assert_eq!(x, describe(&joined, &sample));
+    }
+
+    #[test]
+    fn stored_and_read_back_it_is_the_same((joined, _) in joined_and_sample()) {
+        let text = serde_json::to_string(&joined).unwrap();
+        prop_assert_eq!(serde_json::from_str::<Concatenation>(&text).unwrap(), joined);
+    }
+}
+
+/// 30 samples of `views` views, 8 histograms each, all different.
+fn samples(views: usize) -> Vec<Views> {
+    let histogram = |seed: usize| {
+        let heights: Vec<f32> = (0..BINS).map(|b| 1.0 + (seed * (b + 3) % 1009) as f32).collect();
+        let sum: f32 = heights.iter().sum();
+        heights.into_iter().map(move |h| h / sum)
+    };
+    let view =
+        |i: usize, v: usize| (0..8).flat_map(|k| histogram(1 + 8 * i + k + 500 * v)).collect();
+    (0..30).map(|i| (0..views).map(|v| view(i, v)).collect()).collect()
+}
+
+fn vocabulary() -> Vocabulary {
+    Vocabulary { centres: 18, ..Vocabulary::default() }
+}
+
+#[test]
+fn centres_are_shared_evenly() {
+    for views in 1..=3 {
+        let joined = vocabulary().fit(&samples(views), BINS).unwrap();
+        assert_eq!((joined.views(), joined.dim()), (views, 18));
+        assert!(joined.codebooks().iter().all(|codebook| codebook.len() == 18 / views));
+    }
+}
+
+#[test]
+fn views_are_learnt_apart() {
+    let both = samples(2);
+    let joined = vocabulary().fit(&both, BINS).unwrap();
+    let mut other = both.clone();
+    for sample in &mut other {
+        sample[1].reverse();
+    }
+    let changed = vocabulary().fit(&other, BINS).unwrap();
+    assert_eq!(joined.codebooks()[0], changed.codebooks()[0]);
+    assert_ne!(joined.codebooks()[1], changed.codebooks()[1]);
+}
+
+#[test]
+fn the_seed_decides() {
+    let fit = |seed| {
+        let clustering = KMeans { seed, ..KMeans::default() };
+        Vocabulary { clustering, ..vocabulary() }.fit(&samples(2), BINS).unwrap()
+    };
+    assert_eq!(fit(1), fit(1));
+    assert_ne!(fit(1), fit(2));
+}
+
+#[test]
+fn the_same_at_any_number_of_threads() {
+    let fit = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| vocabulary().fit(&samples(3), BINS).unwrap())
+    };
+    assert_eq!(fit(1), fit(2));
+    assert_eq!(fit(1), fit(8));
+}
+
+#[test]
+fn few_samples_are_taken_evenly() {
+    // 240 histograms, of which 12 make 12 centres: those centres are the histograms themselves.
+    let all = samples(1);
+    let few = Vocabulary { centres: 12, most_samples: 12, ..vocabulary() }.fit(&all, BINS).unwrap();
+    let flat: Vec<f32> = all.concat().concat();
+    let spaced = flat.chunks_exact(BINS).step_by(20);
+    for histogram in spaced {
+        let nearest = few.codebooks()[0].nearest(histogram).unwrap();
+        assert!(nearest.chi_squared < 1e-6, "{}", nearest.chi_squared);
+    }
+}
+
+#[test]
+fn what_cannot_be_learnt_from_is_named() {
+    let message = |samples: &[Views], vocabulary: &Vocabulary, dim| {
+        vocabulary.fit(samples, dim).unwrap_err().to_string()
+    };
+    assert_eq!(message(&[], &vocabulary(), BINS), "there is no view");
+    assert_eq!(message(&[vec![]], &vocabulary(), BINS), "there is no view");
+    let mut odd = samples(2);
+    odd[7].pop();
+    assert_eq!(message(&odd, &vocabulary(), BINS), "1 views where there are codebooks for 2");
+    let uneven = Vocabulary { centres: 17, ..vocabulary() };
+    assert_eq!(
+        message(&samples(2), &uneven, BINS),
+        "17 centres cannot be shared evenly by 2 views"
+    );
+    let mut torn = samples(2);
+    torn[3][1].pop();
+    assert_eq!(
+        message(&torn, &vocabulary(), BINS),
+        "sample 3, view 1: 47 numbers do not make shape contexts of 6"
+    );
+    assert!(matches!(vocabulary().fit(&samples(2), 0), Err(Error::Shape { dim: 0, .. })));
+    let none = Vocabulary { most_samples: 0, ..vocabulary() };
+    assert_eq!(message(&samples(2), &none, BINS), "view 0: no samples");
+    let mut bad = samples(2);
+    bad[0][1][0] = f32::NAN;
+    let message = message(&bad, &vocabulary(), BINS);
+    assert!(message.starts_with("view 1: bin 0 of sample 0 is NaN"), "{message}");
+    let greedy = Vocabulary { voting: Voting { neighbours: 10 }, ..vocabulary() };
+    assert_eq!(
+        greedy.fit(&samples(2), BINS).unwrap_err().to_string(),
+        "view 0: 10 neighbours among 9 centres"
+    );
+}
+
+#[test]
+fn what_cannot_be_described_is_named() {
+    let samples = samples(2);
+    let joined = vocabulary().fit(&samples, BINS).unwrap();
+    let describe = |sample: &[Vec<f32>], length: usize| {
+        let mut x = vec![0.0; length];
+        joined.describe(sample, &mut Scratch::default(), &mut x).unwrap_err()
+    };
+    assert!(matches!(describe(&samples[0][..1], 18), Error::ViewCount { expected: 2, found: 1 }));
+    assert!(matches!(describe(&samples[0], 17), Error::OutputLength { expected: 18, found: 17 }));
+    let blind = [samples[0][0].clone(), Vec::new()];
+    assert!(matches!(describe(&blind, 18), Error::View { view: 1, .. }));
+}
+
+#[test]
+fn parts_that_do_not_fit_are_refused() {
+    assert!(matches!(
+        Concatenation::from_parts(Vec::new(), Voting::default()),
+        Err(Error::NoViews)
+    ));
+    let joined = vocabulary().fit(&samples(2), BINS).unwrap();
+    for neighbours in [0, 10] {
+        let parts = Concatenation::from_parts(joined.codebooks().to_vec(), Voting { neighbours });
+        assert!(matches!(parts, Err(Error::View { view: 0, .. })));
+    }
+    // What is read back is checked likewise.
+    let stored = serde_json::to_string(&joined).unwrap();
+    let greedy = stored.replace(r#""neighbours":5"#, r#""neighbours":10"#);
+    assert_ne!(stored, greedy);
+    let error = serde_json::from_str::<Concatenation>(&greedy).unwrap_err().to_string();
+    assert!(error.contains("10 neighbours among 9 centres"), "{error}");
+}
