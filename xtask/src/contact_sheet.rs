@@ -218,9 +218,7 @@ fn write_sheet(path: &Path, panels: &[&RgbImage]) -> Result<()> {
         let (column, row) = (k as u32 % GRID.0, k as u32 / GRID.0);
         imageops::replace(&mut sheet, *panel, (column * width).into(), (row * height).into());
     }
-    let mut png = std::io::Cursor::new(Vec::new());
-    sheet.write_to(&mut png, image::ImageFormat::Png)?;
-    files::write_whole(path, png.get_ref())
+    files::write_png(path, &sheet)
 }
 
 /// How well the skin model's masks agree with masks from saturation, over all photographs; one

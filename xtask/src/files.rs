@@ -1,9 +1,9 @@
 //! Where the repository's files are, and writing files whole or not at all.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use image::{ImageFormat, RgbImage};
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, PoseTable};
 
@@ -12,20 +12,27 @@ pub(crate) fn in_repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask is in a folder").join(path)
 }
 
-/// Writes a file under a temporary name and renames it, so that it is never half-written.
+/// Writes a file, and the folder that it is in, under another name and renames it, so that it is
+/// never half-written.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
+    let partial = path.with_added_extension("partial");
     let write = || -> std::io::Result<()> {
-        std::fs::create_dir_all(folder)?;
-        let mut file = tempfile::NamedTempFile::new_in(folder)?;
-        file.write_all(bytes)?;
-        file.persist(path)?;
-        Ok(())
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder)?;
+        }
+        std::fs::write(&partial, bytes)?;
+        std::fs::rename(&partial, path)
     };
-    write().with_context(|| format!("writing {}", path.display()))
+    write()
+        .inspect_err(|_| drop(std::fs::remove_file(&partial)))
+        .with_context(|| format!("writing {}", path.display()))
+}
+
+/// Writes a picture as PNG, whole or not at all.
+pub(crate) fn write_png(path: &Path, picture: &RgbImage) -> Result<()> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    picture.write_to(&mut png, ImageFormat::Png)?;
+    write_whole(path, png.get_ref())
 }
 
 /// A hand from its file; the mean adult of the experiments by default.

@@ -3,7 +3,11 @@
 use anyhow::{Result, bail};
 use clap::Args;
 use faer::{Mat, Side};
+use phalanx::draw_silhouette;
+use phalanx_camera::Camera;
 use phalanx_hand::{Dof, HandShape, Pose, write_poses};
+use phalanx_segmentation::Silhouette;
+use rayon::prelude::*;
 
 use crate::{data_set, files, metrics, trajectories};
 
@@ -32,6 +36,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     }
     for (name, frames) in [("open-close", &open_close), ("complex", &complex)] {
         println!("{name}: {}", Difficulty::of(frames));
+        println!("{name}: {}", Coverage::of(frames)?);
     }
     Ok(())
 }
@@ -72,6 +77,51 @@ impl std::fmt::Display for Difficulty {
             "{} frames × 7 θ_Z; predicting the mean errs by {:.2}° over the 21 active angles; {} principal \
              components hold 95 % of the internal variance",
             self.frames, self.mean_predictor_mae_deg, self.components
+        )
+    }
+}
+
+/// How much of the picture the hand and forearm fill, over poses and cameras of the desk.
+struct Coverage {
+    mean: f64,
+    std: f64,
+    /// Silhouettes that leave by more than one border crossing.
+    cut: usize,
+    silhouettes: usize,
+}
+
+impl Coverage {
+    fn of(frames: &[Pose]) -> Result<Self> {
+        let (rig, hand) = (files::rig(None)?, HandShape::adult());
+        let rest = rig.volume.rest_frame();
+        let silhouette = |pose: &Pose, camera: &Camera| -> Result<(f64, bool)> {
+            let silhouette = Silhouette::from_mask(&draw_silhouette(camera, &hand, pose, &rest)?)?;
+            let pixels = silhouette.mask.iter().filter(|&&level| level > 127).count();
+            let share = pixels as f64 / silhouette.mask.len() as f64;
+            Ok((share, silhouette.forearm.crossings > 1))
+        };
+        let drawn = data_set::at_seven_angles(frames)
+            .par_iter()
+            .flat_map_iter(|pose| rig.cameras.iter().map(|camera| silhouette(pose, camera)))
+            .collect::<Result<Vec<_>>>()?;
+        let count = drawn.len() as f64;
+        let mean = drawn.iter().map(|(share, _)| share).sum::<f64>() / count;
+        let variance = drawn.iter().map(|(share, _)| (share - mean).powi(2)).sum::<f64>() / count;
+        let cut = drawn.iter().filter(|(_, cut)| *cut).count();
+        Ok(Self { mean, std: variance.sqrt(), cut, silhouettes: drawn.len() })
+    }
+}
+
+impl std::fmt::Display for Coverage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "silhouettes cover {:.1} % of the picture (standard deviation {:.1} %); {} of {} touch \
+             another border too",
+            100.0 * self.mean,
+            100.0 * self.std,
+            self.cut,
+            self.silhouettes
         )
     }
 }

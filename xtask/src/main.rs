@@ -6,6 +6,7 @@ mod files;
 mod fixtures;
 mod metrics;
 mod neighbours;
+mod pictures;
 mod progress;
 mod saturation;
 mod skin_model;
@@ -43,6 +44,8 @@ enum Command {
     SkinModel(skin_model::Arguments),
     /// Draw silhouettes, contours and hand axes over photographs, and measure the skin model.
     ContactSheet(contact_sheet::Arguments),
+    /// Draw the pictures of the README, and photographs to try the program on.
+    Pictures(pictures::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -64,5 +67,6 @@ fn run(arguments: &Arguments) -> Result<()> {
         Command::Fixtures(arguments) => fixtures::run(arguments),
         Command::SkinModel(arguments) => skin_model::run(arguments),
         Command::ContactSheet(arguments) => contact_sheet::run(arguments),
+        Command::Pictures(arguments) => pictures::run(arguments),
     })
 }

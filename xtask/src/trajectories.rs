@@ -131,7 +131,7 @@ fn random_posture(digit: Digit, random: &mut Pcg64Mcg) -> Posture {
     let wobble = 2.0 * uniform(random) - 1.0;
     if digit == Digit::Thumb {
         return [
-            12.5 + 28.0 * spread,
+            12.5 + 22.0 * spread,
             -8.0 + 46.0 * base,
             -4.0 + 54.0 * outer,
             -8.0 + 72.0 * outer + 6.0 * wobble,
