@@ -125,13 +125,12 @@ proptest! {
 /// 30 samples of `views` views, 8 histograms each, all different.
 fn samples(views: usize) -> Vec<Views> {
     let histogram = |seed: usize| {
-        let heights: Vec<f32> =
-            (0..BINS).map(|b| 1.0 + (seed * 389 * (b + 3) % 1009) as f32).collect();
+        let heights: Vec<f32> = (0..BINS).map(|b| 1.0 + (seed * (b + 3) % 2003) as f32).collect();
         let sum: f32 = heights.iter().sum();
         heights.into_iter().map(move |h| h / sum)
     };
     let view =
-        |i: usize, v: usize| (0..8).flat_map(|k| histogram(1 + 8 * i + k + 500 * v)).collect();
+        |i: usize, v: usize| (0..8).flat_map(|k| histogram(500 + 8 * i + k + 500 * v)).collect();
     (0..30).map(|i| (0..views).map(|v| view(i, v)).collect()).collect()
 }
 
