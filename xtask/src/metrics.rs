@@ -58,3 +58,33 @@ impl AngleErrors {
         pairs.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a data set has active angles")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use faer::Mat;
+
+    use super::*;
+
+    #[test]
+    fn errors_are_those_of_a_worked_example() {
+        let degrees = |dof: Dof, values: [f64; 2]| (dof.index(), values.map(f64::to_radians));
+        let matrix = |rows: &[(usize, [f64; 2])]| {
+            let mut matrix = Mat::zeros(Dof::COUNT, 2);
+            for &(row, values) in rows {
+                matrix[(row, 0)] = values[0];
+                matrix[(row, 1)] = values[1];
+            }
+            matrix
+        };
+        let truth = matrix(&[]);
+        let estimates =
+            matrix(&[degrees(Dof::IndexPip, [1.0, -3.0]), degrees(Dof::ThetaZ, [10.0, 10.0])]);
+        let dofs = [Dof::IndexPip, Dof::ThetaZ];
+        let errors = AngleErrors::new(estimates.as_ref(), truth.as_ref(), &dofs);
+        assert!((errors.mae() - 6.0).abs() < 1e-12, "mean of 2 and 10");
+        assert!((errors.std() - 0.5).abs() < 1e-12, "mean of 1 and 0");
+        assert_eq!(errors.worst().0, Dof::ThetaZ);
+        let twice = AngleErrors::average(&[errors.clone(), errors.clone()]);
+        assert!((twice.mae() - errors.mae()).abs() < 1e-12);
+    }
+}

@@ -26,3 +26,19 @@ pub(crate) fn nearest_mean(
         chosen.iter().map(|&i| targets[(row, i)]).sum::<f64>() / chosen.len() as f64
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use faer::mat;
+
+    use super::*;
+
+    #[test]
+    fn the_mean_is_over_the_nearest() {
+        let train = mat![[0.0, 1.0, 10.0, 2.0]];
+        let targets = mat![[1.0, 3.0, 100.0, 8.0]];
+        let queries = mat![[0.4]];
+        let mean = nearest_mean(train.as_ref(), targets.as_ref(), queries.as_ref(), 3);
+        assert_eq!(mean[(0, 0)], 4.0);
+    }
+}

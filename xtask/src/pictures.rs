@@ -20,7 +20,7 @@ const SHOWN: [(usize, usize); 3] = [(30, 0), (110, 2), (200, 4)];
 /// The photographs' size, px.
 const SIZE: (u32, u32) = (320, 240);
 /// A panel of the README's picture, px.
-const PANEL: (u32, u32) = (240, 180);
+const PANEL: (u32, u32) = (200, 150);
 
 #[derive(Args)]
 pub(crate) struct Arguments {

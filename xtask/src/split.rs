@@ -28,3 +28,25 @@ impl Split {
         Self { train: sorted(train), test: sorted(test) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Split;
+
+    #[test]
+    fn every_sample_is_in_exactly_one_half() {
+        for samples in [1, 2, 546, 1673] {
+            let split = Split::even(samples, 7);
+            assert_eq!(split.train.len(), samples.div_ceil(2));
+            let mut all = [split.train, split.test].concat();
+            all.sort_unstable();
+            assert_eq!(all, (0..samples).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn another_seed_is_another_split() {
+        assert_ne!(Split::even(100, 0).train, Split::even(100, 1).train);
+        assert_eq!(Split::even(100, 1).train, Split::even(100, 1).train);
+    }
+}

@@ -164,3 +164,39 @@ fn uniform(random: &mut Pcg64Mcg) -> f64 {
 pub(crate) fn columns() -> Vec<Dof> {
     Dof::ALL.into_iter().filter(|dof| dof.is_internal()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn poses_are_plausible_and_motion_is_smooth() {
+        for trajectory in [open_close(), complex(), complex_take(1)] {
+            for (frame, pose) in trajectory.iter().enumerate() {
+                assert_eq!(pose.out_of_range(), [], "frame {frame}");
+            }
+            for (frame, pair) in trajectory.windows(2).enumerate() {
+                for dof in columns() {
+                    let step = (pair[1][dof] - pair[0][dof]).abs().to_degrees();
+                    // The steepest minimum-jerk path goes through its whole range in 8 frames.
+                    assert!(step < 30.0, "{dof} jumps by {step} degrees after frame {frame}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_sets_have_the_papers_lengths() {
+        assert_eq!(open_close().len(), 78);
+        assert_eq!(complex().len(), 239);
+    }
+
+    #[test]
+    fn every_internal_angle_varies() {
+        for trajectory in [open_close(), complex()] {
+            for dof in columns() {
+                assert!(trajectory.iter().any(|pose| pose[dof] != trajectory[0][dof]), "{dof}");
+            }
+        }
+    }
+}

@@ -9,20 +9,15 @@ pub(crate) struct PaperRow {
     pub(crate) mae_deg: Option<f64>,
     pub(crate) std_deg: Option<f64>,
     pub(crate) worst_deg: Option<f64>,
-    #[serde(serialize_with = "by_name")]
-    pub(crate) worst_dof: Dof,
+    pub(crate) worst_dof: &'static str,
     /// The fields whose figure stands for three cells, so that its place in this row is a guess.
     pub(crate) guessed: &'static [&'static str],
 }
 
-fn by_name<S: serde::Serializer>(dof: &Dof, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(dof.name())
-}
-
 /// The paper's row for a number of views, a data set and `lin`, `gauss` or `both`.
 pub(crate) fn row(views: usize, data_set: &str, kernels: &str) -> Option<PaperRow> {
-    let row = |mae_deg, std_deg, worst_deg, worst_dof, guessed| {
-        Some(PaperRow { mae_deg, std_deg, worst_deg, worst_dof, guessed })
+    let row = |mae_deg, std_deg, worst_deg, worst_dof: Dof, guessed| {
+        Some(PaperRow { mae_deg, std_deg, worst_deg, worst_dof: worst_dof.name(), guessed })
     };
     let all: &[&str] = &["mae_deg", "std_deg", "worst_deg"];
     let (theta_z, thumb_ip, middle_dip) = (Dof::ThetaZ, Dof::ThumbIp, Dof::MiddleDip);

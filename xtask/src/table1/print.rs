@@ -67,7 +67,7 @@ fn cells(row: &Row) -> Vec<String> {
         format!("{:.1}", row.worst_deg),
         row.worst_dof.to_owned(),
         row.paper.as_ref().map_or_else(String::new, paper_figures),
-        row.paper.as_ref().map_or_else(String::new, |paper| paper.worst_dof.name().to_owned()),
+        row.paper.as_ref().map_or_else(String::new, |paper| paper.worst_dof.to_owned()),
     ]
 }
 
