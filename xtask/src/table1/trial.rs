@@ -79,19 +79,16 @@ impl Trial<'_> {
 
     fn outcome(&self, job: &Job, halves: &Halves) -> Result<Outcome> {
         let Halves { train_x, train_y, test_x, test_y } = halves;
-        let (features, samples, estimates) = match job.method.regressor(job.counts) {
-            Some(regressor) => {
-                let model = regressor.fit(train_x, train_y)?.model;
-                let samples = model.kept_samples().len();
-                let linear = matches!(job.method, Method::Lin | Method::TippingLin);
-                let features = model.selected_features().len();
-                (features, (!linear).then_some(samples), model.predict(test_x.as_ref())?)
-            }
-            None => {
-                let (x, y) = (train_x.as_ref(), train_y.as_ref());
-                let estimates = nearest_mean(x, y, test_x.as_ref(), 5);
-                (train_x.nrows(), Some(train_x.ncols()), estimates)
-            }
+        let (features, samples, estimates) = if let Some(fitter) = job.method.regressor(job.counts)
+        {
+            let model = fitter.fit(train_x, train_y)?.model;
+            let linear = matches!(job.method, Method::Lin | Method::TippingLin);
+            let samples = (!linear).then_some(model.kept_samples().len());
+            (model.selected_features().len(), samples, model.predict(test_x.as_ref())?)
+        } else {
+            let (x, y) = (train_x.as_ref(), train_y.as_ref());
+            let estimates = nearest_mean(x, y, test_x.as_ref(), 5);
+            (train_x.nrows(), Some(train_x.ncols()), estimates)
         };
         let errors =
             |estimates: MatRef<'_, f64>| AngleErrors::new(estimates, test_y.as_ref(), self.active);
