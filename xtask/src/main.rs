@@ -6,6 +6,7 @@ mod files;
 mod fixtures;
 mod metrics;
 mod neighbours;
+mod performance;
 mod pictures;
 mod progress;
 mod saturation;
@@ -46,6 +47,8 @@ enum Command {
     ContactSheet(contact_sheet::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
     Pictures(pictures::Arguments),
+    /// Time every stage and write docs/performance.md.
+    Performance(performance::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -68,5 +71,6 @@ fn run(arguments: &Arguments) -> Result<()> {
         Command::SkinModel(arguments) => skin_model::run(arguments),
         Command::ContactSheet(arguments) => contact_sheet::run(arguments),
         Command::Pictures(arguments) => pictures::run(arguments),
+        Command::Performance(arguments) => performance::run(arguments),
     })
 }

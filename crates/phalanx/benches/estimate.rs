@@ -100,9 +100,7 @@ fn estimate(c: &mut Criterion) {
         let estimator = set.estimator(&regressor);
         for (kind, pictures) in [("photographs", &photographs), ("masks", &masks)] {
             c.bench_function(&format!("three 640x480 {kind} to a pose/{name}"), |b| {
-                b.iter(|| {
-                    estimator.estimate(black_box(pictures), &mut workspace).expect("a hand")
-                });
+                b.iter(|| estimator.estimate(black_box(pictures), &mut workspace).expect("a hand"));
             });
         }
     }

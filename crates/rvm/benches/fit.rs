@@ -67,20 +67,24 @@ fn predictions(c: &mut Criterion) {
     let features = x.as_ref().subrows(0, 32);
     let kernel = Kernel::Gaussian(Width::Scatter(0.3));
     let forward = ForwardSelection { kernel, count: 38, ..ForwardSelection::default() };
-    let model = forward.fit(features, y.as_ref()).unwrap().model;
-    let sample: Vec<f64> = features.col(400).iter().copied().collect();
+    let sparse = forward.fit(features, y.as_ref()).unwrap().model;
+    let dense = KernelRidge::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
     let mut scratch = Scratch::default();
     let (mut mean, mut std) = ([0.0; TARGETS], [0.0; TARGETS]);
-    let mut group = c.benchmark_group("predict 24 from 38 centres of 32");
-    group.bench_function("mean", |b| {
-        b.iter(|| model.predict_mean_into(black_box(&sample), &mut scratch, &mut mean).unwrap());
-    });
-    group.bench_function("mean and deviation", |b| {
-        b.iter(|| {
-            model.predict_into(black_box(&sample), &mut scratch, &mut mean, &mut std).unwrap();
+    for (name, model) in [("38 centres of 32", sparse), ("837 centres of 90", dense)] {
+        let sample: Vec<f64> = x.col(400).iter().copied().take(model.inputs()).collect();
+        let mut group = c.benchmark_group(format!("predict 24 from {name}"));
+        group.bench_function("mean", |b| {
+            b.iter(|| {
+                model.predict_mean_into(black_box(&sample), &mut scratch, &mut mean).unwrap();
+            });
         });
-    });
-    group.finish();
+        group.bench_function("mean and deviation", |b| {
+            b.iter(|| {
+                model.predict_into(black_box(&sample), &mut scratch, &mut mean, &mut std).unwrap();
+            });
+        });
+    }
 }
 
 criterion_group!(benches, fits, predictions);
