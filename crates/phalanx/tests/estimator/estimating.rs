@@ -1,0 +1,107 @@
+//! What an estimate is worth and what it says of itself.
+
+use phalanx::{Picture, Workspace};
+use phalanx_hand::{Dof, Pose};
+use phalanx_segmentation::Evidence;
+
+use crate::desk::{
+    ESTIMATOR, FROM_TOP, difference_deg, estimate, masks, mean, poses, rig, top, unseen,
+};
+
+/// The pose that does best without looking.
+fn mean_pose() -> Pose {
+    let poses = poses();
+    Pose(std::array::from_fn(|k| poses.iter().map(|pose| pose.0[k]).sum::<f64>() / poses.len() as f64))
+}
+
+#[test]
+fn estimates_are_near_the_truth() {
+    for (rig, estimator, share) in [(rig(), &*ESTIMATOR, 0.1), (top(), &*FROM_TOP, 0.2)] {
+        let (mut error, mut blind) = (0.0, 0.0);
+        for pose in unseen() {
+            let found = estimate(estimator, &masks(&rig, &pose)).unwrap();
+            error += difference_deg(&found.pose, &pose);
+            blind += difference_deg(&mean_pose(), &pose);
+        }
+        let views = rig.cameras.len();
+        eprintln!("{views} {error} {blind}");
+        assert!(error < share * blind, "{views} views: {error:.2} of {blind:.2} degrees");
+    }
+}
+
+#[test]
+fn training_poses_are_nearer_still() {
+    let error = |poses: &[Pose]| {
+        let error = |pose| {
+            let found = estimate(&ESTIMATOR, &masks(&rig(), pose)).unwrap();
+            difference_deg(&found.pose, pose)
+        };
+        mean(poses.iter().map(error))
+    };
+    let (learnt, unseen) = (error(&poses()), error(&unseen()));
+    eprintln!("learnt {learnt} unseen {unseen}");
+    assert!(learnt < unseen, "{learnt:.2}, {unseen:.2} degrees");
+}
+
+#[test]
+fn what_never_varied_is_repeated_and_certain() {
+    let found = estimate(&ESTIMATOR, &masks(&rig(), &unseen()[2])).unwrap();
+    for dof in [Dof::WristFlexion, Dof::ThetaX, Dof::TX, Dof::TZ] {
+        assert!(found.pose[dof].abs() < 1e-9 && found.std[dof.index()] < 1e-9, "{dof}");
+    }
+    for dof in [Dof::IndexMcp, Dof::MiddlePip, Dof::ThetaZ] {
+        assert!((1e-4..1.0).contains(&found.std[dof.index()]), "{dof}");
+    }
+}
+
+#[test]
+fn strange_views_are_less_certain() {
+    let known = estimate(&ESTIMATOR, &masks(&rig(), &unseen()[2])).unwrap();
+    // Fingers that were never seen apart: a fist that points.
+    let mut pointing = crate::desk::closing(1.0, 30.0);
+    for dof in [Dof::IndexMcp, Dof::IndexPip, Dof::IndexDip] {
+        pointing[dof] = 0.0;
+    }
+    let strange = estimate(&ESTIMATOR, &masks(&rig(), &pointing)).unwrap();
+    let dof = Dof::IndexPip.index();
+    assert!(strange.std[dof] > 1.5 * known.std[dof], "{} {}", strange.std[dof], known.std[dof]);
+}
+
+#[test]
+fn joints_and_forearms_belong_to_the_pose_and_the_pictures() {
+    let pose = unseen()[3];
+    let found = estimate(&ESTIMATOR, &masks(&rig(), &pose)).unwrap();
+    let frame = rig().volume.rest_frame();
+    assert_eq!(found.joints, ESTIMATOR.hand().pose(&found.pose, &frame).joints);
+    let truth = ESTIMATOR.hand().pose(&pose, &frame).joints;
+    for (joint, (a, b)) in found.joints.iter().zip(truth).enumerate() {
+        assert!(a.distance(b) < 10.0, "joint {joint}: {} mm", a.distance(b));
+    }
+    assert_eq!(found.forearms.len(), 3);
+    for forearm in found.forearms {
+        assert_eq!((forearm.evidence, forearm.crossings), (Evidence::Border, 1));
+        assert!(forearm.end[0] < 1.0, "the forearm enters on the left");
+    }
+}
+
+#[test]
+fn a_used_workspace_changes_nothing() {
+    let mut workspace = Workspace::default();
+    let top_only = masks(&top(), &unseen()[5]);
+    for pose in unseen() {
+        // Another number of views, and a failure, in between.
+        FROM_TOP.estimate(&[Picture::Mask(&top_only[0])], &mut workspace).unwrap();
+        let mut masks = masks(&rig(), &pose);
+        let fresh = estimate(&ESTIMATOR, &masks).unwrap();
+        let used = |masks: &[image::GrayImage], workspace: &mut Workspace| {
+            let pictures: Vec<_> = masks.iter().map(Picture::Mask).collect();
+            ESTIMATOR.estimate(&pictures, workspace)
+        };
+        assert_eq!(used(&masks, &mut workspace).unwrap(), fresh);
+        let silhouettes = workspace.silhouettes().to_vec();
+        let again = ESTIMATOR.estimate_silhouettes(&silhouettes, &mut workspace).unwrap();
+        assert_eq!(again, fresh);
+        masks[1].fill(0);
+        used(&masks, &mut workspace).unwrap_err();
+    }
+}

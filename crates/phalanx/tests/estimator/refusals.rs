@@ -1,0 +1,207 @@
+//! What cannot be estimated from, by name and camera.
+
+use image::{GrayImage, Luma, RgbImage};
+use phalanx::{Error, Estimator, Picture, Segmenter, Workspace};
+use phalanx_codebook::{Codebook, Voting};
+use phalanx_multiview::Concatenation;
+use phalanx_segmentation::{Error as Segmentation, Evidence, MIN_SIDE, SkinModel};
+
+use crate::desk::{ESTIMATOR, FROM_TOP, difference_deg, estimate, masks, rig, top, unseen};
+
+fn uniform(width: u32, height: u32, level: u8) -> GrayImage {
+    GrayImage::from_pixel(width, height, Luma([level]))
+}
+
+/// What the estimator says of this mask as the second of three.
+fn refusal(second: GrayImage) -> Error {
+    let mut masks = masks(&rig(), &unseen()[1]);
+    masks[1] = second;
+    estimate(&ESTIMATOR, &masks).unwrap_err()
+}
+
+#[test]
+fn one_picture_per_camera() {
+    let all = masks(&rig(), &unseen()[1]);
+    let four = [all.clone(), all[..1].to_vec()].concat();
+    for some in [&all[..0], &all[..2], &four] {
+        let error = estimate(&ESTIMATOR, some).unwrap_err();
+        let found = some.len();
+        assert_eq!(
+            error.to_string(),
+            format!("expected one picture per camera, 3 (side, top, other_side), found {found}")
+        );
+    }
+    let error = ESTIMATOR.estimate_silhouettes(&[], &mut Workspace::default()).unwrap_err();
+    assert!(matches!(error, Error::PictureCount { found: 0, .. }));
+}
+
+#[test]
+fn pictures_have_their_cameras_shape() {
+    let message = refusal(uniform(160, 90, 0)).to_string();
+    assert!(message.starts_with("camera 'top': the picture is 160×90"), "{message}");
+    for (width, height) in [(90, 120), (120, 92), (1, 1000), (0, 0), (120, 0)] {
+        let error = refusal(uniform(width, height, 255));
+        let found = (width, height);
+        match error {
+            Error::PictureShape { camera, found: f, .. } => assert_eq!((camera.as_str(), f), ("top", found)),
+            Error::Silhouette { camera, reason: Segmentation::ImageTooSmall { .. } } => {
+                assert_eq!(camera, "top");
+            }
+            other => panic!("{found:?}: {other}"),
+        }
+    }
+}
+
+#[test]
+fn tiny_pictures_are_refused_and_small_ones_are_not() {
+    // Half of it hand: it would make a silhouette.
+    let half = |width, height| {
+        GrayImage::from_fn(width, height, |x, _| Luma([if x < width / 2 { 255 } else { 0 }]))
+    };
+    for (width, height) in [(2, 1), (4, 3), (20, 15)] {
+        let error = refusal(half(width, height));
+        assert!(
+            matches!(&error, Error::Silhouette { camera, reason: Segmentation::ImageTooSmall { .. } } if camera == "top"),
+            "{error}"
+        );
+    }
+    let least = half(24, 18);
+    assert!(least.height() >= MIN_SIDE);
+    let error = estimate(&FROM_TOP, &[least]).map(|_| ());
+    assert!(!matches!(error, Err(Error::Silhouette { reason: Segmentation::ImageTooSmall { .. }, .. })));
+}
+
+#[test]
+fn empty_and_full_masks_are_named() {
+    let error = refusal(uniform(120, 90, 0));
+    assert!(error.to_string().starts_with("camera 'top': empty mask"), "{error}");
+    // 127 is not hand.
+    let error = refusal(uniform(120, 90, 127));
+    assert!(error.to_string().starts_with("camera 'top': empty mask"), "{error}");
+    let error = refusal(uniform(120, 90, 255));
+    assert!(error.to_string().starts_with("camera 'top': no contour"), "{error}");
+}
+
+#[test]
+fn a_photograph_without_a_hand_is_named() {
+    let skin = Segmenter::Skin(SkinModel::builtin());
+    let green = RgbImage::from_pixel(120, 90, image::Rgb([30, 160, 40]));
+    let pictures = [Picture::Photograph(&green, &skin)];
+    let error = FROM_TOP.estimate(&pictures, &mut Workspace::default()).unwrap_err();
+    assert!(error.to_string().starts_with("camera 'top': empty mask"), "{error}");
+}
+
+#[test]
+fn a_hand_cut_off_from_the_border_is_known_by_its_stump() {
+    let pose = unseen()[0];
+    let mut mask = masks(&top(), &pose).remove(0);
+    for (x, _, level) in mask.enumerate_pixels_mut() {
+        if x < 3 {
+            *level = Luma([0]);
+        }
+    }
+    let found = estimate(&FROM_TOP, &[mask]).unwrap();
+    assert_eq!((found.forearms[0].evidence, found.forearms[0].crossings), (Evidence::Stump, 0));
+    let error = difference_deg(&found.pose, &pose);
+    assert!(error < 6.0, "{error:.2} degrees");
+}
+
+#[test]
+fn a_disc_has_no_forearm() {
+    let disc = GrayImage::from_fn(120, 90, |x, y| {
+        let (dx, dy) = (f64::from(x) - 60.0, f64::from(y) - 45.0);
+        Luma([if dx.hypot(dy) < 25.0 { 255 } else { 0 }])
+    });
+    let error = refusal(disc);
+    assert!(error.to_string().starts_with("camera 'top': no forearm"), "{error}");
+}
+
+#[test]
+fn a_second_crossing_is_reported() {
+    let mut mask = masks(&top(), &unseen()[0]).remove(0);
+    for y in 30..33 {
+        for x in 60..120 {
+            mask.put_pixel(x, y, Luma([255]));
+        }
+    }
+    let found = estimate(&FROM_TOP, &[mask]).unwrap();
+    assert_eq!(found.forearms[0].crossings, 2);
+}
+
+#[test]
+fn parts_that_do_not_fit_are_refused() {
+    let estimator = &*ESTIMATOR;
+    let together = |rig, views: &Concatenation, model: &phalanx_rvm::Model| {
+        let (hand, rule) = (estimator.hand().clone(), estimator.orientation());
+        Estimator::from_parts(rig, hand, rule, views.clone(), model.clone())
+    };
+    let whole = together(rig(), estimator.views(), estimator.model()).unwrap();
+    assert_eq!(&whole, estimator);
+
+    let message = |result: phalanx::Result<Estimator>| result.unwrap_err().to_string();
+    assert_eq!(
+        message(together(top(), estimator.views(), estimator.model())),
+        "3 codebooks where there should be 1"
+    );
+    let two = rig().select(&["side", "top"]).unwrap();
+    let codebooks = estimator.views().codebooks();
+    let views = |codebooks: &[Codebook]| {
+        Concatenation::from_parts(codebooks.to_vec(), estimator.views().voting()).unwrap()
+    };
+    assert_eq!(
+        message(together(two, &views(&codebooks[..2]), estimator.model())),
+        "30 regressor inputs where there should be 20"
+    );
+    let mut parts = estimator.model().clone().into_parts();
+    parts.outputs = 27;
+    parts.bias.pop();
+    parts.noise.pop();
+    parts.weights = parts.weights.chunks_exact(28).flat_map(|column| &column[..27]).copied().collect();
+    let model = phalanx_rvm::Model::from_parts(parts).unwrap();
+    assert_eq!(
+        message(together(rig(), estimator.views(), &model)),
+        "27 regressor outputs where there should be 28"
+    );
+    let coarse = Codebook::from_parts(vec![0.25; 40], 4, 0.1).unwrap();
+    let mixed = [codebooks[0].clone(), coarse, codebooks[2].clone()];
+    assert_eq!(
+        message(together(rig(), &views(&mixed), estimator.model())),
+        "camera 'top': its codebook is of 4 bins where shape contexts have 60"
+    );
+    let mut unusable = rig();
+    unusable.cameras[0].intrinsics.fx = 0.0;
+    assert!(matches!(
+        together(unusable, estimator.views(), estimator.model()),
+        Err(Error::Rig(_))
+    ));
+    assert!(Concatenation::from_parts(codebooks.to_vec(), Voting { neighbours: 11 }).is_err());
+}
+
+#[test]
+fn a_regressor_that_overflows_is_named() {
+    let mut parts = FROM_TOP.model().clone().into_parts();
+    parts.weights.fill(1e149);
+    parts.column_means.fill(-1e149);
+    parts.bias.fill(1e149);
+    parts.noise.fill(1e149);
+    let model = phalanx_rvm::Model::from_parts(parts).unwrap();
+    let wild = Estimator::from_parts(
+        top(),
+        FROM_TOP.hand().clone(),
+        FROM_TOP.orientation(),
+        FROM_TOP.views().clone(),
+        model,
+    );
+    match estimate(&wild.unwrap(), &masks(&top(), &unseen()[0])) {
+        Err(Error::Overflow { dof, .. }) => assert_eq!(dof, "thumb.abduction"),
+        Err(other) => panic!("{other}"),
+        Ok(found) => assert!(found.pose.0.iter().chain(&found.std).all(|v| v.is_finite())),
+    }
+}
+
+#[test]
+fn estimators_can_be_shared_by_threads() {
+    fn shared<T: Send + Sync>() {}
+    shared::<Estimator>();
+    shared::<Error>();
+}
