@@ -48,7 +48,7 @@ struct Row {
     kernels: &'static str,
     counts: &'static str,
     selected_features: usize,
-    selected_samples: Option<usize>,
+    selected_samples: usize,
     train_samples: usize,
     test_samples: usize,
     mae_deg: f64,
@@ -160,26 +160,22 @@ fn rows(data_set: &str, views: usize, trials: &[Vec<(Job, Outcome)>]) -> Vec<Row
             (total + trials.len() / 2) / trials.len()
         };
         let (worst_dof, worst_deg) = errors.worst();
-        rows.extend(job.rows.iter().map(|&counts| {
-            Row {
-                views,
-                data_set: data_set.to_owned(),
-                kernels: job.method.name(),
-                counts,
-                selected_features: mean_count(|o| o.selected_features),
-                selected_samples: first
-                    .selected_samples
-                    .map(|_| mean_count(|o| o.selected_samples.unwrap_or_default())),
-                train_samples: first.train_samples,
-                test_samples: first.test_samples,
-                mae_deg: errors.mae(),
-                std_deg: errors.std(),
-                worst_deg,
-                worst_dof: worst_dof.name(),
-                mean_predictor_mae_deg: of_job().map(|o| o.mean_predictor_mae_deg).sum::<f64>()
-                    / trials.len() as f64,
-                paper: paper::row(views, data_set, job.method.name()).filter(|_| counts == "paper"),
-            }
+        rows.extend(job.rows.iter().map(|&counts| Row {
+            views,
+            data_set: data_set.to_owned(),
+            kernels: job.method.name(),
+            counts,
+            selected_features: mean_count(|o| o.selected_features),
+            selected_samples: mean_count(|o| o.selected_samples),
+            train_samples: first.train_samples,
+            test_samples: first.test_samples,
+            mae_deg: errors.mae(),
+            std_deg: errors.std(),
+            worst_deg,
+            worst_dof: worst_dof.name(),
+            mean_predictor_mae_deg: of_job().map(|o| o.mean_predictor_mae_deg).sum::<f64>()
+                / trials.len() as f64,
+            paper: paper::row(views, data_set, job.method.name()).filter(|_| counts == "paper"),
         }));
     }
     rows

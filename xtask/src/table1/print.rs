@@ -60,7 +60,10 @@ fn cells(row: &Row) -> Vec<String> {
         row.data_set.clone(),
         row.kernels.to_owned(),
         row.selected_features.to_string(),
-        row.selected_samples.map_or("–".to_owned(), |count| count.to_string()),
+        match row.selected_samples {
+            0 => "–".to_owned(),
+            count => count.to_string(),
+        },
         format!("{:.2}", row.mae_deg),
         format!("{:.3}", row.mae_deg / row.mean_predictor_mae_deg),
         format!("{:.2}", row.std_deg),

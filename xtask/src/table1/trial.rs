@@ -9,7 +9,6 @@ use phalanx_multiview::Vocabulary;
 use phalanx_shape_context::BINS;
 
 use super::Job;
-use super::method::Method;
 use crate::metrics::AngleErrors;
 use crate::neighbours::nearest_mean;
 use crate::split::Split;
@@ -28,7 +27,8 @@ pub(crate) struct Trial<'a> {
 /// How one method did.
 pub(crate) struct Outcome {
     pub(crate) selected_features: usize,
-    pub(crate) selected_samples: Option<usize>,
+    /// 0 where the kernel is linear.
+    pub(crate) selected_samples: usize,
     pub(crate) train_samples: usize,
     pub(crate) test_samples: usize,
     pub(crate) errors: AngleErrors,
@@ -82,13 +82,12 @@ impl Trial<'_> {
         let (features, samples, estimates) = if let Some(fitter) = job.method.regressor(job.counts)
         {
             let model = fitter.fit(train_x, train_y)?.model;
-            let linear = matches!(job.method, Method::Lin | Method::TippingLin);
-            let samples = (!linear).then_some(model.kept_samples().len());
-            (model.selected_features().len(), samples, model.predict(test_x.as_ref())?)
+            let (features, samples) = (model.selected_features(), model.kept_samples());
+            (features.len(), samples.len(), model.predict(test_x.as_ref())?)
         } else {
             let (x, y) = (train_x.as_ref(), train_y.as_ref());
             let estimates = nearest_mean(x, y, test_x.as_ref(), 5);
-            (train_x.nrows(), Some(train_x.ncols()), estimates)
+            (train_x.nrows(), train_x.ncols(), estimates)
         };
         let errors =
             |estimates: MatRef<'_, f64>| AngleErrors::new(estimates, test_y.as_ref(), self.active);
