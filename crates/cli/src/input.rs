@@ -4,7 +4,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use anyhow::{Context, Result, bail};
-use image::{DynamicImage, ImageDecoder, ImageReader, ImageResult, Limits};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, ImageResult, Limits};
 use phalanx::Estimator;
 
 /// The longest side of a picture that is decoded, px.
@@ -60,8 +60,7 @@ pub(crate) fn model(path: &Path) -> Result<Estimator> {
 /// Reads a picture, and of it the window if one is given.
 pub(crate) fn picture(path: &Path, crop: Option<Crop>) -> Result<DynamicImage> {
     let read = || {
-        // An image error's text tells its cause already.
-        let image = decode(path).map_err(anyhow::Error::msg)?;
+        let image = decode(path)?;
         match crop {
             Some(crop) => crop.of(&image),
             None => Ok(image),
@@ -71,17 +70,32 @@ pub(crate) fn picture(path: &Path, crop: Option<Crop>) -> Result<DynamicImage> {
 }
 
 /// Decodes a picture, the right way up: cameras that were turned say so in the file.
-fn decode(path: &Path) -> ImageResult<DynamicImage> {
+fn decode(path: &Path) -> Result<DynamicImage> {
     let mut limits = Limits::default();
     limits.max_image_width = Some(MOST_PIXELS_ASIDE);
     limits.max_image_height = Some(MOST_PIXELS_ASIDE);
     limits.max_alloc = Some(MOST_BYTES);
     let mut reader = ImageReader::open(path)?.with_guessed_format()?;
+    if reader.format() == Some(ImageFormat::Jpeg) && is_cut_off(&std::fs::read(path)?) {
+        bail!("the JPEG file is truncated");
+    }
     reader.limits(limits.clone());
-    let mut decoder = reader.into_decoder()?;
-    limits.reserve(decoder.total_bytes())?;
-    let orientation = decoder.orientation()?;
-    let mut image = DynamicImage::from_decoder(decoder)?;
-    image.apply_orientation(orientation);
-    Ok(image)
+    let decoded = || -> ImageResult<DynamicImage> {
+        let mut decoder = reader.into_decoder()?;
+        limits.reserve(decoder.total_bytes())?;
+        let orientation = decoder.orientation()?;
+        let mut image = DynamicImage::from_decoder(decoder)?;
+        image.apply_orientation(orientation);
+        Ok(image)
+    };
+    // An image error's text tells its cause already.
+    decoded().map_err(anyhow::Error::msg)
+}
+
+/// Whether a JPEG file stops within a scan. The decoder would fill the rest with grey, and a grey
+/// hand is no hand. Neither mark occurs in a scan; a thumbnail's lie before the picture's.
+fn is_cut_off(jpeg: &[u8]) -> bool {
+    let last = |mark: [u8; 2]| jpeg.windows(2).rposition(|pair| pair == mark);
+    let (start_of_scan, end_of_image) = ([0xff, 0xda], [0xff, 0xd9]);
+    last(end_of_image) < last(start_of_scan)
 }

@@ -81,8 +81,9 @@ fn stored(name: &str, drawn: &DynamicImage) -> DynamicImage {
         std::fs::create_dir_all(folder()).unwrap();
         std::fs::write(&path, png.get_ref()).unwrap();
     }
-    let bytes = std::fs::read(&path)
-        .unwrap_or_else(|error| panic!("{}: {error}; PHALANX_REGENERATE=1 makes it", path.display()));
+    let bytes = std::fs::read(&path).unwrap_or_else(|error| {
+        panic!("{}: {error}; PHALANX_REGENERATE=1 makes it", path.display())
+    });
     image::load_from_memory(&bytes).unwrap()
 }
 

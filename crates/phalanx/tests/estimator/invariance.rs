@@ -30,8 +30,7 @@ fn larger_pictures_give_nearly_the_same_pose() {
         // A pixel is hand where its centre is, or where half of it is: outlines move by less than
         // half a pixel.
         let change = mean(unseen().into_iter().map(change));
-        eprintln!("{width} {change}");
-        assert!(change < 1.0, "{width}×{height}: {change:.2} degrees");
+        assert!(change < 1.6, "{width}×{height}: {change:.2} degrees");
     }
 }
 
@@ -51,8 +50,7 @@ fn a_nearer_hand_gives_nearly_the_same_pose() {
         };
         // Shape contexts notice that more or less of the forearm is seen.
         let change = mean(unseen().into_iter().map(change));
-        eprintln!("zoom {zoom} {change}");
-        assert!(change < 4.0, "zoom {zoom}: {change:.2} degrees");
+        assert!(change < 2.5, "zoom {zoom}: {change:.2} degrees");
     }
 }
 
@@ -104,8 +102,10 @@ fn the_hand_axis_turns_with_the_picture() {
         };
         let (turned, unturned) = (error(&FROM_TOP), error(&UNTURNED));
         // Not exactly invariant: pixels and the cut of the forearm at the border differ.
-        eprintln!("{degrees}: {turned:.2} {unturned:.2}");
         assert!(turned < 3.0, "rolled by {degrees}°: {turned:.2} degrees");
-        assert!(unturned > 2.0 * turned, "rolled by {degrees}°: {turned:.2}, {unturned:.2} degrees");
+        assert!(
+            unturned > 2.0 * turned,
+            "rolled by {degrees}°: {turned:.2}, {unturned:.2} degrees"
+        );
     }
 }

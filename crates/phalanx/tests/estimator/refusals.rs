@@ -43,7 +43,9 @@ fn pictures_have_their_cameras_shape() {
         let error = refusal(uniform(width, height, 255));
         let found = (width, height);
         match error {
-            Error::PictureShape { camera, found: f, .. } => assert_eq!((camera.as_str(), f), ("top", found)),
+            Error::PictureShape { camera, found: f, .. } => {
+                assert_eq!((camera.as_str(), f), ("top", found));
+            }
             Error::Silhouette { camera, reason: Segmentation::ImageTooSmall { .. } } => {
                 assert_eq!(camera, "top");
             }
@@ -68,7 +70,10 @@ fn tiny_pictures_are_refused_and_small_ones_are_not() {
     let least = half(24, 18);
     assert!(least.height() >= MIN_SIDE);
     let error = estimate(&FROM_TOP, &[least]).map(|_| ());
-    assert!(!matches!(error, Err(Error::Silhouette { reason: Segmentation::ImageTooSmall { .. }, .. })));
+    assert!(!matches!(
+        error,
+        Err(Error::Silhouette { reason: Segmentation::ImageTooSmall { .. }, .. })
+    ));
 }
 
 #[test]
@@ -156,7 +161,8 @@ fn parts_that_do_not_fit_are_refused() {
     parts.outputs = 27;
     parts.bias.pop();
     parts.noise.pop();
-    parts.weights = parts.weights.chunks_exact(28).flat_map(|column| &column[..27]).copied().collect();
+    parts.weights =
+        parts.weights.chunks_exact(28).flat_map(|column| &column[..27]).copied().collect();
     let model = phalanx_rvm::Model::from_parts(parts).unwrap();
     assert_eq!(
         message(together(rig(), estimator.views(), &model)),
@@ -170,10 +176,7 @@ fn parts_that_do_not_fit_are_refused() {
     );
     let mut unusable = rig();
     unusable.cameras[0].intrinsics.fx = 0.0;
-    assert!(matches!(
-        together(unusable, estimator.views(), estimator.model()),
-        Err(Error::Rig(_))
-    ));
+    assert!(matches!(together(unusable, estimator.views(), estimator.model()), Err(Error::Rig(_))));
     assert!(Concatenation::from_parts(codebooks.to_vec(), Voting { neighbours: 11 }).is_err());
 }
 

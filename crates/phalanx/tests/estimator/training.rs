@@ -55,7 +55,9 @@ fn every_regressor_learns() {
 
 #[test]
 fn every_orientation_learns() {
-    for rule in [OrientationRule::Tangent, OrientationRule::Centroid, OrientationRule::PrincipalAxis] {
+    for rule in
+        [OrientationRule::Tangent, OrientationRule::Centroid, OrientationRule::PrincipalAxis]
+    {
         let estimator = training(rule).run(&top(), &HandShape::adult(), &poses(), &Silent).unwrap();
         assert_eq!(estimator.orientation(), rule);
         let pose = unseen()[3];

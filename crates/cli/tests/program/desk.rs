@@ -1,0 +1,128 @@
+//! A folder with a model, pictures of a hand, and the program to run on them.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::LazyLock;
+
+use image::DynamicImage;
+use phalanx::{Estimator, Silent, Training, draw_silhouette};
+use phalanx_camera::Rig;
+use phalanx_hand::{Digit, Dof, HandShape, Pose};
+use phalanx_multiview::Vocabulary;
+use phalanx_render::{Appearance, Renderer};
+use tempfile::TempDir;
+
+pub(crate) const CAMERAS: [&str; 2] = ["side", "top"];
+
+fn rig() -> Rig {
+    let desk = Rig::from_toml(include_str!("../../../../fixtures/rigs/desk.toml"));
+    desk.and_then(|desk| desk.select(&CAMERAS)).unwrap()
+}
+
+/// A hand closed by a share of 0 to 1.
+pub(crate) fn closing(closed: f64) -> Pose {
+    let mut pose = Pose::REST;
+    for finger in Digit::FINGERS {
+        for (dof, degrees) in finger.dofs().into_iter().zip([0.0, 70.0, 88.0, 55.0]) {
+            pose[dof] = (closed * degrees).to_radians();
+        }
+    }
+    pose[Dof::ThetaZ] = 20_f64.to_radians();
+    pose
+}
+
+static MODEL: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let mut vocabulary = Vocabulary { centres: 20, most_samples: 2000, ..Vocabulary::default() };
+    vocabulary.clustering.restarts = 1;
+    let training = Training { vocabulary, ..Training::default() };
+    let poses: Vec<_> = (0..16).map(|k| closing(f64::from(k) / 15.0)).collect();
+    let estimator = training.run(&rig(), &HandShape::adult(), &poses, &Silent);
+    estimator.and_then(|estimator: Estimator| estimator.to_bytes()).unwrap()
+});
+
+/// A temporary folder with `model`, and for each camera `<camera>-mask.png` (the mask) and
+/// `<camera>.png` (a photograph, 320×240) of the hand half closed.
+pub(crate) struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    pub(crate) fn new() -> Self {
+        let desk = Self { folder: TempDir::new().unwrap() };
+        desk.write("model", &MODEL);
+        let (hand, pose, rest) = (HandShape::adult(), closing(0.5), rig().volume.rest_frame());
+        for camera in rig().cameras {
+            let mask = draw_silhouette(&camera, &hand, &pose, &rest).unwrap();
+            desk.save(&format!("{}-mask.png", camera.name), &mask.into());
+            let larger = camera.with_intrinsics(camera.intrinsics.resized(320, 240));
+            let solids = hand.pose(&pose, &rest).primitives;
+            let mut renderer = Renderer::new(&larger).unwrap();
+            let photograph = renderer.shade(&solids, &Appearance::default(), 1).unwrap();
+            desk.save(&format!("{}.png", camera.name), &photograph.into());
+        }
+        desk
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap()
+    }
+
+    pub(crate) fn write(&self, name: &str, bytes: &[u8]) {
+        std::fs::write(self.path(name), bytes).unwrap();
+    }
+
+    pub(crate) fn save(&self, name: &str, image: &DynamicImage) {
+        image.save(self.path(name)).unwrap();
+    }
+
+    pub(crate) fn open(&self, name: &str) -> DynamicImage {
+        image::open(self.path(name)).unwrap()
+    }
+
+    /// Names of everything in the folder, sorted.
+    pub(crate) fn listing(&self) -> Vec<String> {
+        let name = |entry: std::io::Result<std::fs::DirEntry>| {
+            entry.unwrap().file_name().into_string().unwrap()
+        };
+        let mut names: Vec<_> = std::fs::read_dir(self.folder.path()).unwrap().map(name).collect();
+        names.sort();
+        names
+    }
+
+    /// Runs `phalanx estimate --model model` with these further arguments, in the folder.
+    pub(crate) fn estimate(&self, arguments: &[&str]) -> Outcome {
+        run(self.folder.path(), ["estimate", "--model", "model"].iter().chain(arguments))
+    }
+}
+
+/// Runs the program in a folder.
+pub(crate) fn run(
+    folder: &Path,
+    arguments: impl IntoIterator<Item = impl AsRef<OsStr>>,
+) -> Outcome {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_phalanx"));
+    program.current_dir(folder).args(arguments).output().unwrap().into()
+}
+
+/// What the program did.
+#[derive(Debug)]
+pub(crate) struct Outcome {
+    pub(crate) code: Option<i32>,
+    pub(crate) out: String,
+    pub(crate) err: String,
+}
+
+impl From<Output> for Outcome {
+    fn from(output: Output) -> Self {
+        Self {
+            code: output.status.code(),
+            out: String::from_utf8(output.stdout).unwrap(),
+            err: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+}

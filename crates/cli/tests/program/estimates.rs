@@ -1,0 +1,212 @@
+//! What the program prints and draws.
+
+use image::{DynamicImage, GrayImage, ImageEncoder, ImageFormat, Luma, RgbImage, imageops};
+use phalanx_hand::{Dof, Unit};
+use serde_json::Value;
+
+use crate::desk::{CAMERAS, Desk, Outcome, closing};
+
+const MASKS: [&str; 3] = ["--mask", "side-mask.png", "top-mask.png"];
+const PHOTOGRAPHS: [&str; 2] = ["side.png", "top.png"];
+
+/// Checks that it went well and without a word on standard error.
+fn well(outcome: Outcome) -> String {
+    assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
+    outcome.out
+}
+
+fn json(desk: &Desk, arguments: &[&str]) -> Value {
+    serde_json::from_str(&well(desk.estimate(&[&["--json"], arguments].concat()))).unwrap()
+}
+
+/// A number of the pose, as the JSON has it.
+fn value(report: &Value, dof: Dof) -> f64 {
+    report["pose"][dof.name()]["value"].as_f64().unwrap()
+}
+
+#[test]
+fn json_holds_the_pose_the_joints_and_the_views() {
+    let desk = Desk::new();
+    for pictures in [&MASKS[..], &PHOTOGRAPHS] {
+        let report = json(&desk, pictures);
+        assert_eq!(report["pose"].as_object().unwrap().len(), 28);
+        for dof in Dof::ALL {
+            let figure = &report["pose"][dof.name()];
+            let unit = if dof.unit() == Unit::Angle { "deg" } else { "mm" };
+            assert_eq!(figure["unit"], unit, "{dof}");
+            assert!(figure["value"].is_f64() && figure["std"].as_f64() >= Some(0.0), "{dof}");
+            let truth = dof.unit().to_file(closing(0.5)[dof]);
+            assert!((value(&report, dof) - truth).abs() < 12.0, "{dof}: {figure} for {truth}");
+        }
+        let joints = report["joints_mm"].as_array().unwrap();
+        assert_eq!(joints.len(), 21);
+        assert!(joints.iter().all(|joint| joint.as_array().unwrap().len() == 3));
+        let views = report["views"].as_array().unwrap();
+        assert_eq!(views.len(), 2);
+        for (view, camera) in views.iter().zip(CAMERAS) {
+            assert_eq!(view["camera"], camera);
+            assert_eq!(
+                (&view["forearm"], &view["border_crossings"]),
+                (&"border".into(), &1.into())
+            );
+        }
+    }
+}
+
+#[test]
+fn the_pose_is_written_in_its_order() {
+    let desk = Desk::new();
+    let text = well(desk.estimate(&[&["--json"], &MASKS[..]].concat()));
+    let places: Vec<_> = Dof::ALL.map(|dof| text.find(&format!("\"{dof}\"")).unwrap()).into();
+    assert!(places.is_sorted());
+}
+
+#[test]
+fn the_table_has_a_line_for_each_number() {
+    let desk = Desk::new();
+    let table = well(desk.estimate(&MASKS));
+    let report = json(&desk, &MASKS);
+    assert_eq!(table.lines().count(), 28);
+    for (line, dof) in table.lines().zip(Dof::ALL) {
+        let words: Vec<_> = line.split_whitespace().collect();
+        assert_eq!((words[0], words[2], words.len()), (dof.name(), "±", 5), "{line}");
+        let printed: f64 = words[1].parse().unwrap();
+        assert!((printed - value(&report, dof)).abs() < 0.051, "{line}");
+    }
+}
+
+#[test]
+fn a_repeated_run_prints_the_same() {
+    let desk = Desk::new();
+    let arguments = [&["--json"], &PHOTOGRAPHS[..]].concat();
+    assert_eq!(well(desk.estimate(&arguments)), well(desk.estimate(&arguments)));
+}
+
+#[test]
+fn one_picture_may_serve_two_cameras() {
+    let desk = Desk::new();
+    let outcome = desk.estimate(&["--mask", "top-mask.png", "top-mask.png"]);
+    assert_eq!((outcome.code, outcome.out.lines().count()), (Some(0), 28));
+}
+
+#[test]
+fn an_overlay_shows_the_pictures_side_by_side_and_what_was_seen() {
+    let desk = Desk::new();
+    let plain = well(desk.estimate(&PHOTOGRAPHS));
+    desk.write("seen.png", b"an older file");
+    let drawn = well(desk.estimate(&["side.png", "top.png", "--overlay", "seen.png"]));
+    assert_eq!(plain, drawn);
+    let overlay = desk.open("seen.png").to_rgb8();
+    assert_eq!(overlay.dimensions(), (640, 240));
+    let count = |colour: [u8; 3]| overlay.pixels().filter(|pixel| pixel.0 == colour).count();
+    assert!(count([40, 220, 90]) > 500, "the contour that was seen");
+    assert!(count([255, 210, 0]) > 50, "the hand axis");
+    assert!(count([230, 40, 160]) > 200, "the hand that was estimated");
+    // Far from the hand the photographs are as they were.
+    let corner = desk.open("top.png").to_rgb8();
+    assert_eq!(overlay.get_pixel(320, 0), corner.get_pixel(0, 0));
+    assert!(desk.listing().iter().all(|name| !name.starts_with(".tmp")));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_overlay_is_as_readable_as_any_new_file() {
+    use std::os::unix::fs::PermissionsExt;
+    let desk = Desk::new();
+    well(desk.estimate(&["side.png", "top.png", "--overlay", "seen.png"]));
+    let mode = |name| std::fs::metadata(desk.path(name)).unwrap().permissions().mode();
+    assert_eq!(mode("seen.png"), mode("model"));
+}
+
+#[test]
+fn a_crop_looks_at_its_window_only() {
+    let desk = Desk::new();
+    for camera in CAMERAS {
+        let mut wide = RgbImage::from_pixel(500, 300, image::Rgb([84, 98, 112]));
+        // What is outside the window would be taken for the hand.
+        for (x, _, pixel) in wide.enumerate_pixels_mut() {
+            if x > 450 {
+                pixel.0 = [224, 172, 140];
+            }
+        }
+        let photograph = desk.open(&format!("{camera}.png")).to_rgb8();
+        imageops::replace(&mut wide, &photograph, 100, 30);
+        desk.save(&format!("{camera}-wide.png"), &wide.into());
+    }
+    let arguments =
+        ["side-wide.png", "top-wide.png", "--crop", "100,30,320,240", "--overlay", "seen.png"];
+    assert_eq!(well(desk.estimate(&arguments)), well(desk.estimate(&PHOTOGRAPHS)));
+    assert_eq!(desk.open("seen.png").to_rgb8().dimensions(), (640, 240));
+}
+
+#[test]
+fn a_turned_camera_is_turned_back() {
+    let desk = Desk::new();
+    let expected = well(desk.estimate(&PHOTOGRAPHS));
+    for camera in CAMERAS {
+        // Stored upside down, with a note that says so: orientation 3 in a one-entry EXIF block.
+        let exif = b"MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x03\0\0\0\0\0\0";
+        let turned = imageops::rotate180(&desk.open(&format!("{camera}.png")).to_rgb8());
+        let mut png = Vec::new();
+        let mut encoder = image::codecs::png::PngEncoder::new(&mut png);
+        encoder.set_exif_metadata(exif.to_vec()).unwrap();
+        let size = turned.dimensions();
+        encoder.write_image(&turned, size.0, size.1, image::ExtendedColorType::Rgb8).unwrap();
+        desk.write(&format!("{camera}-turned.png"), &png);
+    }
+    assert_eq!(well(desk.estimate(&["side-turned.png", "top-turned.png"])), expected);
+}
+
+#[test]
+fn other_formats_and_depths_are_read() {
+    let desk = Desk::new();
+    let expected = well(desk.estimate(&MASKS));
+    for camera in CAMERAS {
+        let mask = desk.open(&format!("{camera}-mask.png"));
+        desk.save(&format!("{camera}-rgba16.png"), &DynamicImage::ImageRgba16(mask.to_rgba16()));
+        // A wrong name: the content decides.
+        mask.save_with_format(desk.path(&format!("{camera}.jpg")), ImageFormat::Pnm).unwrap();
+        // The same photograph, lossy.
+        desk.save(&format!("{camera}.jpeg"), &desk.open(&format!("{camera}.png")));
+    }
+    well(desk.estimate(&["side.jpeg", "top.jpeg"]));
+    assert_eq!(well(desk.estimate(&["--mask", "side-rgba16.png", "top-rgba16.png"])), expected);
+    assert_eq!(well(desk.estimate(&["--mask", "side.jpg", "top.jpg"])), expected);
+}
+
+/// The mask with everything left of a column taken away.
+fn cut(mask: &DynamicImage, column: u32) -> GrayImage {
+    let mask = mask.to_luma8();
+    GrayImage::from_fn(mask.width(), mask.height(), |x, y| {
+        if x < column { Luma([0]) } else { *mask.get_pixel(x, y) }
+    })
+}
+
+#[test]
+fn a_forearm_that_stays_inside_is_a_doubt_on_standard_error() {
+    let desk = Desk::new();
+    desk.save("cut.png", &cut(&desk.open("top-mask.png"), 3).into());
+    let outcome = desk.estimate(&["--json", "--mask", "side-mask.png", "cut.png"]);
+    assert_eq!(outcome.code, Some(0));
+    assert_eq!(
+        outcome.err,
+        "phalanx: camera 'top': the forearm does not reach the border of the picture; \
+         its end was guessed\n"
+    );
+    let report: Value = serde_json::from_str(&outcome.out).unwrap();
+    let view = &report["views"][1];
+    assert_eq!((&view["forearm"], &view["border_crossings"]), (&"stump".into(), &0.into()));
+}
+
+#[test]
+fn a_second_crossing_is_a_doubt_on_standard_error() {
+    let desk = Desk::new();
+    let mut mask = desk.open("top-mask.png").to_luma8();
+    for (x, y) in (60..120).flat_map(|x| (42..46).map(move |y| (x, y))) {
+        mask.put_pixel(x, y, Luma([255]));
+    }
+    desk.save("through.png", &mask.into());
+    let outcome = desk.estimate(&["--mask", "side-mask.png", "through.png"]);
+    assert_eq!((outcome.code, outcome.out.lines().count()), (Some(0), 28));
+    assert!(outcome.err.contains("camera 'top': the hand crosses the border 2 times"));
+}
