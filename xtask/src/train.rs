@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use phalanx::{Regressor, Training};
 use phalanx_camera::Rig;
 
@@ -20,8 +20,8 @@ pub(crate) struct Arguments {
     #[arg(long, default_value = "3")]
     views: String,
     /// The regressor.
-    #[arg(long, value_enum, default_value_t = Kernels::KernelRidge)]
-    kernels: Kernels,
+    #[arg(long, value_enum, default_value = "kernel_ridge")]
+    kernels: TableMethod,
     /// The rig, TOML; the desk of fixtures/ by default.
     #[arg(long, value_name = "FILE.toml")]
     rig: Option<PathBuf>,
@@ -33,35 +33,12 @@ pub(crate) struct Arguments {
     out: PathBuf,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-#[value(rename_all = "snake_case")]
-enum Kernels {
-    /// Linear, the paper's number of features.
-    Lin,
-    /// Gaussian, the paper's number of samples.
-    Gauss,
-    /// Features selected linearly, then samples by Gaussian kernels.
-    Both,
-    /// Gaussian, samples by orthogonal forward selection.
-    Forward,
-    /// Tipping's relevance vector machine for each output, linear.
-    TippingLin,
-    /// Dense Gaussian kernel ridge regression.
-    KernelRidge,
-}
-
-impl Kernels {
-    /// The regressor, with the paper's counts where it selects.
-    fn regressor(self, counts: PaperCounts) -> Regressor {
-        let method = match self {
-            Self::Lin => TableMethod::Lin,
-            Self::Gauss => TableMethod::Gauss,
-            Self::Both => TableMethod::Both,
-            Self::Forward => TableMethod::Forward,
-            Self::TippingLin => TableMethod::TippingLin,
-            Self::KernelRidge => return Training::default().regressor,
-        };
-        method.regressor(counts).expect("all but nearest neighbours have a regressor")
+/// The regressor, with the paper's counts where it selects; dense kernel regression is that of
+/// [`Training`], for pictures that were not drawn.
+fn regressor(method: TableMethod, counts: PaperCounts) -> Regressor {
+    match method {
+        TableMethod::KernelRidge => Training::default().regressor,
+        method => method.regressor(counts).expect("nearest neighbours cannot be asked for"),
     }
 }
 
@@ -74,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let hand = files::hand(arguments.hand.as_deref())?;
     let rig = views(&rig, &arguments.views)?;
     let counts = PaperCounts::paper(rig.cameras.len(), &data_set.name);
-    let regressor = arguments.kernels.regressor(counts);
+    let regressor = regressor(arguments.kernels, counts);
     let training = Training { regressor, ..Training::default() };
     let bar = progress::Bar::new();
     let estimator = training.run(&rig, &hand, &data_set.poses, &bar)?;

@@ -1,5 +1,6 @@
 //! The methods that the table compares.
 
+use clap::ValueEnum;
 use phalanx::Regressor;
 use phalanx_rvm::{Bridges, Cascade, ForwardSelection, Kernel, KernelRidge, Stop, Tipping};
 
@@ -27,14 +28,23 @@ impl Counts {
 }
 
 /// A row's method.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
 pub(crate) enum Method {
+    /// Column-wise bridges, linear: features are selected.
     Lin,
+    /// Column-wise bridges, Gaussian: samples are selected.
     Gauss,
+    /// Features selected linearly, then samples by Gaussian kernels.
     Both,
+    /// Gaussian, samples selected by orthogonal forward selection.
     Forward,
+    /// Tipping's relevance vector machine for each output, linear.
     TippingLin,
+    /// Dense Gaussian kernel ridge regression.
     KernelRidge,
+    /// The mean of the five nearest neighbours, which fits nothing.
+    #[value(skip)]
     Knn5,
 }
 
