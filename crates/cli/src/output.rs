@@ -71,7 +71,7 @@ pub(crate) fn json(estimator: &Estimator, estimate: &Estimate) -> Result<String>
     });
     let report = Report {
         pose: Figures(estimate),
-        joints_mm: estimate.joints.iter().map(|joint| joint.to_array()).collect(),
+        joints_mm: estimate.joints.map(<[f64; 3]>::from).to_vec(),
         views: views.collect(),
     };
     Ok(serde_json::to_string_pretty(&report)? + "\n")

@@ -4,11 +4,13 @@ use std::sync::LazyLock;
 
 use image::GrayImage;
 use phalanx::{
-    Estimate, Estimator, OrientationRule, Picture, Silent, Training, Workspace, draw_silhouette,
+    Estimate, Estimator, OrientationRule, Picture, Regressor, Silent, Training, Workspace,
+    draw_silhouette,
 };
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_multiview::Vocabulary;
+use phalanx_rvm::KernelRidge;
 
 /// A hand closed by a share of 0 to 1 and turned about the forearm.
 pub(crate) fn closing(closed: f64, theta_z_deg: f64) -> Pose {
@@ -54,7 +56,9 @@ pub(crate) fn top() -> Rig {
 pub(crate) fn training(orientation: OrientationRule) -> Training {
     let mut vocabulary = Vocabulary { centres: 30, most_samples: 4000, ..Vocabulary::default() };
     vocabulary.clustering.restarts = 1;
-    Training { orientation, vocabulary, ..Training::default() }
+    // The penalty by leave-one-out: what is asked about lies between what is learnt.
+    let regressor = Regressor::KernelRidge(KernelRidge::default());
+    Training { orientation, vocabulary, regressor }
 }
 
 fn learn(rig: &Rig, orientation: OrientationRule) -> Estimator {

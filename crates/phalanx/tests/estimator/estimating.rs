@@ -28,7 +28,7 @@ fn estimates_are_near_the_truth() {
             let blind = mean(poses.iter().map(|pose| difference_deg(&mean_pose(), pose)));
             let views = rig.cameras.len();
             assert!(
-                error < 0.15 * blind,
+                error < 0.1 * blind,
                 "{views} views, {kind} poses: {error:.2} of {blind:.2} degrees"
             );
         }

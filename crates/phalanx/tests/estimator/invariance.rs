@@ -50,7 +50,7 @@ fn a_nearer_hand_gives_nearly_the_same_pose() {
         };
         // Shape contexts notice that more or less of the forearm is seen.
         let change = mean(unseen().into_iter().map(change));
-        assert!(change < 2.5, "zoom {zoom}: {change:.2} degrees");
+        assert!(change < 4.0, "zoom {zoom}: {change:.2} degrees");
     }
 }
 

@@ -7,3 +7,4 @@ mod model_file;
 mod photographs;
 mod refusals;
 mod training;
+mod working_size;
