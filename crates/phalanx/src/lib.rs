@@ -18,3 +18,8 @@ pub use picture::{Picture, Segmenter};
 pub use progress::{Progress, Silent};
 pub use training::{Regressor, Training, descriptors, targets};
 pub use training_views::{PoseContexts, describe_poses, draw_silhouette};
+
+/// The example of the repository's README, which must compile.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct RepositoryReadme;

@@ -15,8 +15,8 @@ const ESTIMATED: Rgb<u8> = Rgb([230, 40, 160]);
 ///
 /// `window` is the part of `canvas` that the observed silhouette shows. Where the hand is in
 /// space is not estimated from descriptors, which are blind to shift, scale and roll: the
-/// estimated contour is brought onto the observed one by the similarity that matches hand axes,
-/// centroids and areas.
+/// estimated contour is brought onto the observed one by the similarity that matches the arms'
+/// directions, centroids and areas.
 pub fn draw_overlay(
     canvas: &mut RgbImage,
     window: CropWindow,
@@ -33,9 +33,8 @@ pub fn draw_overlay(
     if let Ok(axis) = hand_axis(&observed.contour.points, observed.forearm.end) {
         pen.path(&[axis.forearm_end, axis.tip], to_canvas, AXIS);
     }
-    if let Some((estimated, onto)) =
-        estimated.and_then(|estimated| Some((estimated, Similarity::between(estimated, observed)?)))
-    {
+    if let Some(estimated) = estimated {
+        let onto = Similarity::between(estimated, observed);
         for piece in estimated.contour.pieces() {
             pen.path(piece, |point| to_canvas(onto.apply(point)), ESTIMATED);
         }
@@ -59,15 +58,21 @@ struct Similarity {
 }
 
 impl Similarity {
-    /// From one silhouette onto another: hand axes parallel, centroids and areas equal. `None`
-    /// where a silhouette has no hand axis.
-    fn between(from: &Silhouette, to: &Silhouette) -> Option<Self> {
-        let axis = |of: &Silhouette| hand_axis(&of.contour.points, of.forearm.end).ok();
-        let angle = axis(to)?.angle() - axis(from)?.angle();
-        let (from_area, from) = area_and_centroid(from);
-        let (to_area, to) = area_and_centroid(to);
+    /// From one silhouette onto another. The line from the forearm's end to the centroid is
+    /// steadier than the hand axis, which jumps where another finger becomes the tip.
+    fn between(from: &Silhouette, to: &Silhouette) -> Self {
+        let (from_area, from_centroid) = area_and_centroid(from);
+        let (to_area, to_centroid) = area_and_centroid(to);
+        let angle = |of: &Silhouette, centroid: [f64; 2]| {
+            (centroid[1] - of.forearm.end[1]).atan2(centroid[0] - of.forearm.end[0])
+        };
+        let angle = angle(to, to_centroid) - angle(from, from_centroid);
         let scale = (to_area / from_area).sqrt();
-        Some(Self { turn: [scale * angle.cos(), scale * angle.sin()], from, to })
+        Self {
+            turn: [scale * angle.cos(), scale * angle.sin()],
+            from: from_centroid,
+            to: to_centroid,
+        }
     }
 
     fn apply(&self, [x, y]: [f64; 2]) -> [f64; 2] {

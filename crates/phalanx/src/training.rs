@@ -33,7 +33,7 @@ impl Default for Training {
             vocabulary: Vocabulary::default(),
             regressor: Regressor::KernelRidge(KernelRidge {
                 width: Width::Scatter(0.5),
-                lambda: Lambda::Given(0.1),
+                lambda: Lambda::Given(0.01),
             }),
         }
     }
