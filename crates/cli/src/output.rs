@@ -82,7 +82,10 @@ pub(crate) fn text(estimate: &Estimate) -> String {
     let mut text = String::new();
     for dof in Dof::ALL {
         let Figure { value, std, unit } = Figure::of(estimate, dof);
-        writeln!(text, "{dof:18} {value:8.1} ± {std:5.1} {unit}").expect("writing to a string");
+        // A number that no training pose varied is not estimated, however sure it looks.
+        let spread =
+            if std > 0.0 { format!("± {std:5.1} {unit}") } else { format!("{unit}, not learnt") };
+        writeln!(text, "{dof:18} {value:8.1} {spread}").expect("writing to a string");
     }
     text
 }
