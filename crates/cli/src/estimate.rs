@@ -46,14 +46,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
 
     let mut workspace = Workspace::default();
     let estimate = if arguments.mask {
-        of_masks(&estimator, &pictures, &mut workspace)?
+        of_masks(&estimator, &arguments.images, &pictures, &mut workspace)?
     } else {
         of_photographs(&estimator, &pictures, &mut workspace)?
     };
+    let mut doubts = output::doubts(&estimator, &estimate);
     if let Some(path) = &arguments.overlay {
-        output::write_png(path, &overlay(&estimator, &estimate, &pictures, &workspace)?)?;
+        let overlay = overlay(&estimator, &estimate, &pictures, &workspace, &mut doubts)?;
+        output::write_png(path, &overlay)?;
     }
-    for doubt in output::doubts(&estimator, &estimate) {
+    for doubt in doubts {
         eprintln!("phalanx: {doubt}");
     }
     if arguments.json {
@@ -69,10 +71,19 @@ fn is_png(path: &Path) -> bool {
 
 fn of_masks(
     estimator: &Estimator,
+    paths: &[PathBuf],
     pictures: &[DynamicImage],
     workspace: &mut Workspace,
 ) -> Result<Estimate> {
     let masks: Vec<_> = pictures.iter().map(DynamicImage::to_luma8).collect();
+    for (path, mask) in paths.iter().zip(&masks) {
+        if let Some(level @ 1..=127) = mask.iter().max() {
+            bail!(
+                "{}: brighter than 127 is hand; the brightest pixel has level {level}",
+                path.display()
+            );
+        }
+    }
     let masks: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
     Ok(estimator.estimate(&masks, workspace)?)
 }
@@ -89,22 +100,28 @@ fn of_photographs(
     Ok(estimator.estimate(&photographs, workspace)?)
 }
 
-/// The pictures side by side with what was seen and estimated.
+/// The pictures side by side with what was seen and estimated. An estimated hand that cannot be
+/// drawn is a doubt.
 fn overlay(
     estimator: &Estimator,
     estimate: &Estimate,
     pictures: &[DynamicImage],
     workspace: &Workspace,
+    doubts: &mut Vec<String>,
 ) -> Result<RgbImage> {
     let mut panels = Vec::new();
     for (view, camera) in estimator.rig().cameras.iter().enumerate() {
         let rest = estimator.rig().volume.rest_frame();
         let drawn = draw_silhouette(camera, estimator.hand(), &estimate.pose, &rest)?;
-        let estimated = Silhouette::from_mask(&drawn).ok();
+        let estimated = Silhouette::from_mask(&drawn);
+        if let Err(reason) = &estimated {
+            let camera = &camera.name;
+            doubts.push(format!("camera '{camera}': the estimated hand is not drawn: {reason}"));
+        }
         let mut canvas = pictures[view].to_rgb8();
         let window = working_window(canvas.dimensions())?;
         let observed = &workspace.silhouettes()[view];
-        draw_overlay(&mut canvas, window, observed, estimated.as_ref());
+        draw_overlay(&mut canvas, window, observed, estimated.as_ref().ok());
         panels.push(canvas);
     }
     Ok(side_by_side(&panels))

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::str::FromStr;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, ImageResult, Limits};
 use phalanx::Estimator;
 
@@ -88,14 +88,35 @@ fn decode(path: &Path) -> Result<DynamicImage> {
         image.apply_orientation(orientation);
         Ok(image)
     };
-    // An image error's text tells its cause already.
-    decoded().map_err(anyhow::Error::msg)
+    // An image error's text tells its cause already, and may end in a blank line.
+    decoded().map_err(|error| anyhow!("{}", error.to_string().trim_end()))
 }
 
-/// Whether a JPEG file stops within a scan. The decoder would fill the rest with grey, and a grey
-/// hand is no hand. Neither mark occurs in a scan; a thumbnail's lie before the picture's.
+/// Whether a JPEG file stops before its end-of-image mark. The decoder would fill the rest with
+/// grey, and a grey hand is no hand. What follows that mark, such as a maker's trailer, may hold
+/// anything; what is wrong before it is for the decoder to say.
 fn is_cut_off(jpeg: &[u8]) -> bool {
-    let last = |mark: [u8; 2]| jpeg.windows(2).rposition(|pair| pair == mark);
-    let (start_of_scan, end_of_image) = ([0xff, 0xda], [0xff, 0xd9]);
-    last(end_of_image) < last(start_of_scan)
+    const END_OF_IMAGE: u8 = 0xd9;
+    const START_OF_SCAN: u8 = 0xda;
+    let (mut ahead, mut in_scan) = (jpeg, false);
+    loop {
+        ahead = match *ahead {
+            [] | [0xff] => return true,
+            [0xff, END_OF_IMAGE, ..] => return false,
+            // The start of the image and restarts have no segment; marks may be filled up in front.
+            [0xff, 0x01 | 0xd0..=0xd8, ref after @ ..] => after,
+            [0xff, 0xff, ..] => &ahead[1..],
+            [0xff, mark @ 1..=0xfe, ref segment @ ..] => {
+                let Some(&length) = segment.first_chunk() else { return true };
+                let length = usize::from(u16::from_be_bytes(length));
+                if length < 2 {
+                    return false;
+                }
+                in_scan = mark == START_OF_SCAN;
+                segment.get(length..).unwrap_or_default()
+            }
+            [_, ref after @ ..] if in_scan => after,
+            _ => return false,
+        }
+    }
 }

@@ -33,16 +33,18 @@ impl Serialize for Figures<'_> {
 #[derive(Serialize)]
 struct Figure {
     value: f64,
-    std: f64,
+    /// None for a number that no training pose varied: it is not estimated, and a deviation of 0
+    /// would read as certainty.
+    std: Option<f64>,
     unit: &'static str,
 }
 
 impl Figure {
     fn of(estimate: &Estimate, dof: Dof) -> Self {
-        let unit = dof.unit();
+        let (unit, std) = (dof.unit(), estimate.std[dof.index()]);
         Self {
             value: unit.to_file(estimate.pose[dof]),
-            std: unit.to_file(estimate.std[dof.index()]),
+            std: (std > 0.0).then(|| unit.to_file(std)),
             unit: match unit {
                 Unit::Angle => "deg",
                 Unit::Length => "mm",
@@ -82,9 +84,10 @@ pub(crate) fn text(estimate: &Estimate) -> String {
     let mut text = String::new();
     for dof in Dof::ALL {
         let Figure { value, std, unit } = Figure::of(estimate, dof);
-        // A number that no training pose varied is not estimated, however sure it looks.
-        let spread =
-            if std > 0.0 { format!("± {std:5.1} {unit}") } else { format!("{unit}, not learnt") };
+        let spread = match std {
+            Some(std) => format!("± {std:5.1} {unit}"),
+            None => format!("{unit}, not learnt"),
+        };
         writeln!(text, "{dof:18} {value:8.1} {spread}").expect("writing to a string");
     }
     text

@@ -23,6 +23,7 @@ impl Desk {
             assert_eq!(outcome.err.matches(part).count(), 1, "said twice: {}", outcome.err);
         }
         assert!(!outcome.err.contains("panicked"), "{}", outcome.err);
+        assert!(!outcome.err.ends_with("\n\n"), "a blank line: {}", outcome.err);
         assert_eq!(self.listing(), before);
         assert_eq!(self.read("overlay.png"), b"an older file");
     }
@@ -89,6 +90,8 @@ fn truncated_and_damaged_pictures() {
     for share in [2, 5, 8] {
         desk.refuses_file(&jpeg[..jpeg.len() * share / 9], &["truncated"]);
     }
+    // A segment shorter than its own length.
+    desk.refuses_file(b"\xff\xd8\xff\xe0\0\x01", &["invalid length"]);
     photograph.save_with_format(desk.path("top.ppm"), ImageFormat::Pnm).unwrap();
     let ppm = desk.read("top.ppm");
     desk.refuses_file(&ppm[..ppm.len() / 2], &[]);
@@ -132,6 +135,10 @@ fn pictures_of_another_shape() {
 fn masks_without_a_silhouette() {
     let desk = Desk::new();
     desk.refuses_mask(uniform(120, 90, 0), &["camera 'top': empty mask"]);
+    let expected = "bad.png: brighter than 127 is hand; the brightest pixel has level ";
+    for level in [1, 127] {
+        desk.refuses_mask(uniform(120, 90, level), &[&format!("{expected}{level}\n")]);
+    }
     desk.refuses_mask(uniform(120, 90, 255), &["camera 'top': no contour"]);
     let disc = GrayImage::from_fn(120, 90, |x, y| {
         let (dx, dy) = (f64::from(x) - 60.0, f64::from(y) - 45.0);
