@@ -7,15 +7,17 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use glam::DVec3;
 use image::{GrayImage, RgbImage, imageops};
-use phalanx::{Describer, Estimator, Progress, Training, Workspace, draw_overlay, draw_silhouette};
+use phalanx::{
+    Describer, Estimator, Progress, Training, WORKING_SIZE, Workspace, draw_overlay,
+    draw_silhouette,
+};
 use phalanx_camera::{Camera, Intrinsics, Rig};
 use phalanx_hand::{HandShape, Side};
 use phalanx_segmentation::{Cleanup, CropWindow, Silhouette, SkinModel, clean, downsample};
 use rayon::prelude::*;
 
 use crate::data_set::DataSet;
-use crate::saturation::{SaturationThreshold, overlap};
-use crate::{files, progress};
+use crate::{files, progress, saturation};
 
 /// Panels beside each other on a sheet, and below each other.
 const GRID: (u32, u32) = (12, 8);
@@ -42,44 +44,60 @@ struct Look {
     failure: Option<String>,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let bar = progress::Bar::new();
-    let estimator = Framing { forearm_mm: 35.0 }.estimator(&bar)?;
-    let digits = photographs(&arguments.data.join("digits"))?;
-    let looks = look_at(&digits, &estimator, &bar);
-    write_sheets(&arguments.out, "digits", &looks)?;
-    let estimator = Framing { forearm_mm: 240.0 }.estimator(&bar)?;
-    let frames = photographs(&arguments.data.join("one-camera/frames"))?;
-    let frames: Vec<(String, RgbImage)> = frames
-        .into_iter()
-        .map(|(name, image)| Ok((name, downsample(&image, 120, 90)?)))
-        .collect::<Result<_>>()?;
-    let frame_looks = look_at(&frames, &estimator, &bar);
-    write_sheets(&arguments.out, "one-camera", &frame_looks)?;
-    drop(bar);
-
-    println!("digits: {}", overlap_report(&digits, &looks));
-    for (name, looks) in [("digits", &looks), ("one-camera", &frame_looks)] {
-        let failures: Vec<&Look> = looks.iter().filter(|look| look.failure.is_some()).collect();
-        println!("{name}: {} of {} photographs without an estimate", failures.len(), looks.len());
-        for look in failures {
-            println!("  {}: {}", look.name, look.failure.as_deref().unwrap_or_default());
-        }
-    }
-    println!("sheets: {}", arguments.out.display());
-    Ok(())
+/// A folder of photographs.
+struct Set {
+    name: &'static str,
+    folder: &'static str,
+    backdrop: Backdrop,
+    /// How much of the forearm its photographs show, mm.
+    forearm_mm: f64,
 }
 
-/// How the photographs of a set show an arm: a camera above it, as far away as the desk's.
-struct Framing {
-    /// What of the forearm is in the picture, mm.
-    forearm_mm: f64,
+/// What is behind the hand.
+#[derive(PartialEq, Eq)]
+enum Backdrop {
+    /// Bright and unsaturated, so that saturation alone makes a mask to compare with.
+    BrightWall,
+    /// Anything else.
+    Other,
+}
+
+const SETS: [Set; 2] = [
+    Set { name: "digits", folder: "digits", backdrop: Backdrop::BrightWall, forearm_mm: 35.0 },
+    Set {
+        name: "one-camera",
+        folder: "one-camera/frames",
+        backdrop: Backdrop::Other,
+        forearm_mm: 240.0,
+    },
+];
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let mut report = String::new();
+    for set in SETS {
+        let folder = arguments.data.join(set.folder);
+        if !folder.is_dir() {
+            eprintln!("{}: no such folder; left out", folder.display());
+            continue;
+        }
+        let bar = progress::Bar::new();
+        let photographs = photographs(&folder)?;
+        let looks = look_at(&photographs, &set.estimator(&bar)?, &bar);
+        drop(bar);
+        write_sheets(&arguments.out, set.name, &looks)?;
+        report += &set.report(&photographs, &looks);
+    }
+    if report.is_empty() {
+        let [first, second] = SETS.map(|set| set.folder);
+        bail!("{}: there is neither {first} nor {second}", arguments.data.display());
+    }
+    files::print(&report)
 }
 
 /// From the wrist to a little beyond the fingertips.
 const HAND_MM: f64 = 195.0;
 
-impl Framing {
+impl Set {
     /// The top camera of the desk, aimed and zoomed so that hand and forearm fill its width.
     fn rig(&self) -> Result<Rig> {
         let mut rig = files::rig(None)?.select(&["top"])?;
@@ -103,20 +121,30 @@ impl Framing {
     }
 }
 
-/// All photographs below a folder with their names, in order.
+/// All photographs below a folder with their names, in order; large ones at the working size.
+/// What cannot be read is named on standard error and left out.
 fn photographs(folder: &Path) -> Result<Vec<(String, RgbImage)>> {
     let mut paths = Vec::new();
     collect(folder, &mut paths)?;
     paths.sort();
-    if paths.is_empty() {
-        bail!("{}: no photographs", folder.display());
-    }
     let load = |path: &PathBuf| -> Result<(String, RgbImage)> {
         let image = image::open(path).with_context(|| path.display().to_string())?.to_rgb8();
         let name = path.strip_prefix(folder).unwrap_or(path).display().to_string();
+        let (width, height) = WORKING_SIZE;
+        if image.width() > width && image.height() > height {
+            return Ok((name, downsample(&image, width, height)?));
+        }
         Ok((name, image))
     };
-    paths.par_iter().map(load).collect()
+    let loaded: Vec<_> = paths.par_iter().map(load).collect();
+    let readable = loaded.into_iter().filter_map(|photograph| {
+        photograph.inspect_err(|error| eprintln!("left out: {error:#}")).ok()
+    });
+    let photographs: Vec<_> = readable.collect();
+    if photographs.is_empty() {
+        bail!("{}: no photographs", folder.display());
+    }
+    Ok(photographs)
 }
 
 fn collect(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<()> {
@@ -126,7 +154,9 @@ fn collect(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<()> {
         let extension = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
         if path.is_dir() {
             collect(&path, paths)?;
-        } else if extension.is_some_and(|extension| extension == "jpg" || extension == "png") {
+        } else if extension
+            .is_some_and(|extension| ["jpg", "jpeg", "png"].iter().any(|known| extension == *known))
+        {
             paths.push(path);
         }
     }
@@ -211,7 +241,8 @@ fn write_sheets(folder: &Path, name: &str, looks: &[Look]) -> Result<()> {
 }
 
 fn write_sheet(path: &Path, panels: &[&RgbImage]) -> Result<()> {
-    let (width, height) = panels[0].dimensions();
+    let width = panels.iter().map(|panel| panel.width()).max().unwrap_or_default();
+    let height = PANEL_HEIGHT;
     let rows = (panels.len() as u32).div_ceil(GRID.0);
     let mut sheet = RgbImage::new(width * GRID.0, height * rows);
     for (k, panel) in panels.iter().enumerate() {
@@ -221,25 +252,39 @@ fn write_sheet(path: &Path, panels: &[&RgbImage]) -> Result<()> {
     files::write_png(path, &sheet)
 }
 
-/// How well the skin model's masks agree with masks from saturation, over all photographs; one
-/// without a mask counts as no overlap.
+impl Set {
+    /// What there is to say of the set.
+    fn report(&self, photographs: &[(String, RgbImage)], looks: &[Look]) -> String {
+        let mut lines = Vec::new();
+        if self.backdrop == Backdrop::BrightWall {
+            lines.push(overlap_report(photographs, looks));
+        }
+        let failed = || looks.iter().filter_map(|look| Some((&look.name, look.failure.as_ref()?)));
+        let count = failed().count();
+        lines.push(format!("{count} of {} photographs without an estimate", looks.len()));
+        lines.extend(failed().map(|(photograph, failure)| format!("  {photograph}: {failure}")));
+        lines.iter().fold(String::new(), |text, line| text + self.name + ": " + line + "\n")
+    }
+}
+
+/// How well the skin model's masks agree with masks from saturation, over all photographs that
+/// have one; a photograph without a skin mask counts as no overlap.
 fn overlap_report(photographs: &[(String, RgbImage)], looks: &[Look]) -> String {
-    let threshold = SaturationThreshold::of(photographs);
-    let mut overlaps: Vec<f64> = photographs
-        .iter()
-        .zip(looks)
-        .filter_map(|((_, image), look)| {
-            let reference = threshold.mask(image)?;
-            Some(look.mask.as_ref().map_or(0.0, |mask| overlap(mask, &reference)))
-        })
-        .collect();
+    let overlap_of = |((_, image), look): (&(String, RgbImage), &Look)| {
+        let reference = saturation::reference_mask(image)?;
+        Some(look.mask.as_ref().map_or(0.0, |mask| saturation::overlap(mask, &reference)))
+    };
+    let mut overlaps: Vec<f64> = photographs.iter().zip(looks).filter_map(overlap_of).collect();
     overlaps.sort_by(f64::total_cmp);
-    let at = |share: f64| overlaps[(share * (overlaps.len() - 1) as f64) as usize];
+    let Some(last) = overlaps.len().checked_sub(1) else {
+        return "no photograph is saturated anywhere: there is no mask to compare with".to_owned();
+    };
+    let at = |share: f64| overlaps[(share * last as f64) as usize];
     format!(
         "{} photographs against masks from saturation over {} of 255: intersection over union \
          median {:.3}, quartiles {:.3} and {:.3}, 5th percentile {:.3}",
         overlaps.len(),
-        threshold.0,
+        saturation::THRESHOLD,
         at(0.5),
         at(0.25),
         at(0.75),

@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use anyhow::{Result, bail};
-use phalanx_hand::{Dof, Pose, Unit};
+use phalanx::{OrientationRule, PoseContexts, Progress, describe_each_pose};
+use phalanx_camera::Rig;
+use phalanx_hand::{Dof, HandShape, Pose, Unit};
 
 use crate::files;
 
@@ -20,7 +22,7 @@ impl DataSet {
     /// `open-close` or `complex`, from `fixtures/trajectories/`.
     pub(crate) fn stored(name: &str) -> Result<Self> {
         let path = files::in_repository(&format!("fixtures/trajectories/{name}.csv"));
-        Self::from_file(name, &path)
+        Ok(Self { name: name.to_owned(), poses: at_seven_angles(&files::poses(&path)?.poses) })
     }
 
     /// Any trajectory from a file. Where θ_Z does not vary in it, every pose is repeated at the
@@ -28,9 +30,57 @@ impl DataSet {
     /// poses are taken as they are.
     pub(crate) fn from_file(name: &str, path: &Path) -> Result<Self> {
         let frames = files::poses(path)?.poses;
-        let turns = frames.iter().any(|pose| pose[Dof::ThetaZ] != frames[0][Dof::ThetaZ]);
-        let poses = if turns { frames } else { at_seven_angles(&frames) };
-        Ok(Self { name: name.to_owned(), poses })
+        let theta_z = frames[0][Dof::ThetaZ];
+        let turns = frames.iter().any(|pose| pose[Dof::ThetaZ] != theta_z);
+        if turns {
+            return Ok(Self { name: name.to_owned(), poses: frames });
+        }
+        eprintln!(
+            "{}: {} is {:.1} degrees in all {} rows: each is repeated at 0, 15, ... 90 degrees",
+            path.display(),
+            Dof::ThetaZ,
+            theta_z.to_degrees(),
+            frames.len()
+        );
+        Ok(Self { name: name.to_owned(), poses: at_seven_angles(&frames) })
+    }
+
+    /// Draws and describes every pose. Those that some camera does not show well enough are
+    /// left out of the set, and said so on standard error.
+    ///
+    /// # Errors
+    /// An unusable rig, or fewer than four poses left: two to learn from and two to test on.
+    pub(crate) fn describe(
+        &mut self,
+        rig: &Rig,
+        hand: &HandShape,
+        progress: &dyn Progress,
+    ) -> Result<Vec<PoseContexts>> {
+        let all = self.poses.len();
+        let results =
+            describe_each_pose(rig, hand, &self.poses, OrientationRule::HandAxis, progress)?;
+        let (mut kept, mut contexts, mut first) = (Vec::new(), Vec::new(), None);
+        for (pose, result) in self.poses.iter().zip(results) {
+            match result {
+                Ok(described) => {
+                    kept.push(*pose);
+                    contexts.push(described);
+                }
+                Err(error) => first = first.or(Some(error)),
+            }
+        }
+        self.poses = kept;
+        if let Some(error) = first {
+            let left_out = all - self.poses.len();
+            eprintln!(
+                "{}: {left_out} of {all} poses are left out; the first: {error:#}",
+                self.name
+            );
+        }
+        if self.poses.len() < 4 {
+            bail!("data set '{}': {} poses are too few to split", self.name, self.poses.len());
+        }
+        Ok(contexts)
     }
 
     /// The angles that vary: those over which errors are averaged.

@@ -1,5 +1,6 @@
 //! Where the repository's files are, and writing files whole or not at all.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
@@ -26,6 +27,12 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     write()
         .inspect_err(|_| drop(std::fs::remove_file(&partial)))
         .with_context(|| format!("writing {}", path.display()))
+}
+
+/// Writes a result to standard output.
+pub(crate) fn print(result: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(result.as_bytes()).and_then(|()| out.flush()).context("writing the result")
 }
 
 /// Writes a picture as PNG, whole or not at all.

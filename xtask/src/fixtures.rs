@@ -35,8 +35,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         }
     }
     for (name, frames) in [("open-close", &open_close), ("complex", &complex)] {
-        println!("{name}: {}", Difficulty::of(frames));
-        println!("{name}: {}", Coverage::of(frames)?);
+        let (difficulty, coverage) = (Difficulty::of(frames), Coverage::of(frames)?);
+        files::print(&format!("{name}: {difficulty}\n{name}: {coverage}\n"))?;
     }
     Ok(())
 }
@@ -128,8 +128,7 @@ impl std::fmt::Display for Coverage {
 
 fn mean_predictor_mae_deg(frames: &[Pose]) -> f64 {
     let truth = phalanx::targets(&data_set::at_seven_angles(frames));
-    let mean = row_means(&truth);
-    let guess = Mat::from_fn(truth.nrows(), truth.ncols(), |row, _| mean[row]);
+    let guess = metrics::mean_predictor(&truth, truth.ncols());
     let active: Vec<Dof> =
         Dof::ALL.into_iter().filter(|&dof| dof.is_internal() || dof == Dof::ThetaZ).collect();
     metrics::AngleErrors::new(guess.as_ref(), truth.as_ref(), &active).mae()
@@ -138,9 +137,11 @@ fn mean_predictor_mae_deg(frames: &[Pose]) -> f64 {
 /// How many principal components of the 20 internal angles hold `share` of their variance.
 fn components_for(share: f64, frames: &[Pose]) -> usize {
     let angles = phalanx::targets(frames);
-    let mean = row_means(&angles);
+    let mean = metrics::mean_predictor(&angles, 1);
     let covariance = Mat::from_fn(Dof::INTERNAL, Dof::INTERNAL, |a, b| -> f64 {
-        (0..frames.len()).map(|i| (angles[(a, i)] - mean[a]) * (angles[(b, i)] - mean[b])).sum()
+        (0..frames.len())
+            .map(|i| (angles[(a, i)] - mean[(a, 0)]) * (angles[(b, i)] - mean[(b, 0)]))
+            .sum()
     });
     let mut variances =
         covariance.self_adjoint_eigenvalues(Side::Lower).expect("a covariance has eigenvalues");
@@ -154,11 +155,4 @@ fn components_for(share: f64, frames: &[Pose]) -> usize {
             held < share * total
         })
         .count()
-}
-
-fn row_means(values: &Mat<f64>) -> Vec<f64> {
-    let columns = values.ncols();
-    (0..values.nrows())
-        .map(|row| (0..columns).map(|i| values[(row, i)]).sum::<f64>() / columns as f64)
-        .collect()
 }

@@ -1,6 +1,6 @@
 //! Errors of estimates, as the paper reports them.
 
-use faer::MatRef;
+use faer::{Mat, MatRef};
 use phalanx_hand::Dof;
 
 /// Absolute errors over test samples, degrees, dof by dof.
@@ -59,10 +59,18 @@ impl AngleErrors {
     }
 }
 
+/// The mean of the targets' columns, once for each of `samples`: what guessing without looking
+/// gives.
+pub(crate) fn mean_predictor(targets: &Mat<f64>, samples: usize) -> Mat<f64> {
+    let mean = |row: usize| {
+        (0..targets.ncols()).map(|i| targets[(row, i)]).sum::<f64>() / targets.ncols() as f64
+    };
+    let means: Vec<f64> = (0..targets.nrows()).map(mean).collect();
+    Mat::from_fn(targets.nrows(), samples, |row, _| means[row])
+}
+
 #[cfg(test)]
 mod tests {
-    use faer::Mat;
-
     use super::*;
 
     #[test]

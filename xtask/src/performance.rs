@@ -143,7 +143,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let page = page(arguments, &medians)?;
     let path = files::in_repository("docs/performance.md");
     files::write_whole(&path, page.as_bytes())?;
-    println!("{}: {} benchmarks", path.display(), medians.len());
+    files::print(&format!("{}: {} benchmarks\n", path.display(), medians.len()))?;
     Ok(())
 }
 

@@ -48,8 +48,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let sheet = estimates(&shown, &rig, &hand, &bar)?;
     drop(bar);
     files::write_png(&arguments.out.join("estimates.png"), &sheet)?;
-    println!("{}", arguments.out.display());
-    Ok(())
+    files::print(&format!("{}\n", arguments.out.display()))
 }
 
 /// The posed hand as one camera would photograph it.

@@ -34,8 +34,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let shipped = files::in_repository("crates/segmentation/models/skin.txt");
     let out = arguments.out.clone().unwrap_or(shipped);
     files::write_whole(&out, &bytes)?;
-    println!("{}: {} skin and {} other pixels", out.display(), counts[0], counts[1]);
-    Ok(())
+    let [skin, other] = counts;
+    files::print(&format!("{}: {skin} skin and {other} other pixels\n", out.display()))
 }
 
 /// A row of the file: colour and class.

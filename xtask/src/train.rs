@@ -13,7 +13,8 @@ use crate::{files, progress};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// `open-close`, `complex`, or a file of poses (CSV, degrees).
+    /// `open-close`, `complex`, or a file of poses (CSV, degrees); where θ_Z does not vary in
+    /// it, each pose is repeated at seven angles from 0° to 90°.
     #[arg(long, default_value = "complex")]
     data_set: String,
     /// The cameras: names from the rig separated by commas, or `1` for the top view, `3` for all.
@@ -59,8 +60,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let bytes = estimator.to_bytes()?;
     files::write_whole(&arguments.out, &bytes)?;
     let names: Vec<&str> = rig.cameras.iter().map(|camera| camera.name.as_str()).collect();
-    println!(
-        "{}: {} poses of '{}' through {}; reads {} features, {} kernel centres; {} KiB",
+    files::print(&format!(
+        "{}: {} poses of '{}' through {}; reads {} features, {} kernel centres; {} KiB\n",
         arguments.out.display(),
         data_set.poses.len(),
         data_set.name,
@@ -68,8 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         estimator.model().selected_features().len(),
         estimator.model().kept_samples().len(),
         bytes.len().div_ceil(1024),
-    );
-    Ok(())
+    ))
 }
 
 /// The cameras that were asked for.

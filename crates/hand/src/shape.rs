@@ -109,7 +109,7 @@ pub struct ForearmShape {
 }
 
 impl HandShape {
-    /// A mean adult's right hand, 185 mm from wrist to middle tip and 83 mm broad at the knuckles.
+    /// A mean adult's right hand, 185 mm from wrist to middle tip and 81 mm broad at the knuckles.
     ///
     /// Segment lengths after the radiographic means of Buryanov and Kotiuk (2010), soft tissue of
     /// the tips included; widths after published hand anthropometry.

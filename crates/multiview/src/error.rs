@@ -43,14 +43,6 @@ pub enum Error {
         /// Length given.
         found: usize,
     },
-    /// The views cannot share the centres evenly.
-    #[error("{centres} centres cannot be shared evenly by {views} views")]
-    UnevenShare {
-        /// Centres of all views together.
-        centres: usize,
-        /// Views.
-        views: usize,
-    },
 }
 
 /// A result of this crate.

@@ -4,7 +4,7 @@ use phalanx_codebook::{KMeans, Voting};
 
 use crate::{Concatenation, Error, Result};
 
-/// The codebooks to learn: the paper's 90 centres, shared evenly by the views, so that
+/// The codebooks to learn: the paper's 90 centres, shared as evenly as they go by the views, so that
 /// descriptors of one view and of three have the same length (§ 2).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vocabulary {
@@ -36,15 +36,12 @@ impl Vocabulary {
     ///
     /// # Errors
     /// No view, views that differ in number between samples, a view that is not a whole number
-    /// of shape contexts, centres that cannot be shared evenly, or what clustering reports.
+    /// of shape contexts, or what clustering reports.
     pub fn fit<S: AsRef<[Vec<f32>]>>(&self, contexts: &[S], dim: usize) -> Result<Concatenation> {
         let views = check(contexts, dim)?;
-        if !self.centres.is_multiple_of(views) {
-            return Err(Error::UnevenShare { centres: self.centres, views });
-        }
         let codebooks = (0..views).map(|view| {
             let clustering = KMeans {
-                centres: self.centres / views,
+                centres: self.centres / views + usize::from(view < self.centres % views),
                 seed: self.clustering.seed.wrapping_mul(1_000_003).wrapping_add(view as u64),
                 ..self.clustering
             };

@@ -17,7 +17,7 @@ pub use overlay::{draw_overlay, working_window};
 pub use picture::{Picture, Segmenter};
 pub use progress::{Progress, Silent};
 pub use training::{Regressor, Training, descriptors, targets};
-pub use training_views::{PoseContexts, describe_poses, draw_silhouette};
+pub use training_views::{PoseContexts, describe_each_pose, describe_poses, draw_silhouette};
 
 /// The example of the repository's README, which must compile.
 #[cfg(doctest)]

@@ -28,26 +28,32 @@ pub fn describe_poses(
     rule: OrientationRule,
     progress: &dyn Progress,
 ) -> Result<Vec<PoseContexts>> {
+    describe_each_pose(rig, hand, poses, rule, progress)?.into_iter().collect()
+}
+
+/// [`describe_poses`], with a result for each pose.
+///
+/// # Errors
+/// A camera that cannot draw at all; of each pose, that a camera cannot see or describe it.
+pub fn describe_each_pose(
+    rig: &Rig,
+    hand: &HandShape,
+    poses: &[Pose],
+    rule: OrientationRule,
+    progress: &dyn Progress,
+) -> Result<Vec<Result<PoseContexts>>> {
     let cameras = rig.cameras.iter().map(working_camera).collect::<Result<Vec<_>>>()?;
     let views = cameras.iter().map(ViewDescriber::new).collect::<Result<Vec<_>>>()?;
     let rest = rig.volume.rest_frame();
     progress.begin("render and describe", poses.len());
-    let described: Vec<Result<PoseContexts>> = poses
-        .par_iter()
-        .map_init(
-            || views.clone(),
-            |views, pose| {
-                let solids = hand.pose(pose, &rest).primitives;
-                let contexts = views.iter_mut().map(|view| view.contexts(&solids, rule)).collect();
-                progress.step();
-                contexts
-            },
-        )
-        .collect();
-    let name_pose = |(pose, result): (usize, Result<PoseContexts>)| {
-        result.map_err(|reason| Error::TrainingPose { pose, reason: Box::new(reason) })
+    let describe = |views: &mut Vec<ViewDescriber<'_>>, (pose, numbers): (usize, &Pose)| {
+        let solids = hand.pose(numbers, &rest).primitives;
+        let contexts: Result<PoseContexts> =
+            views.iter_mut().map(|view| view.contexts(&solids, rule)).collect();
+        progress.step();
+        contexts.map_err(|reason| Error::TrainingPose { pose, reason: Box::new(reason) })
     };
-    described.into_iter().enumerate().map(name_pose).collect()
+    Ok(poses.par_iter().enumerate().map_init(|| views.clone(), describe).collect())
 }
 
 /// Draws a posed hand as one camera's silhouette at [`WORKING_SIZE`].

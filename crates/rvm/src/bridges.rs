@@ -84,14 +84,16 @@ impl Bridges {
     /// columns that too strong a prior chose.
     pub(crate) fn select(&self, design: &Design<'_>) -> Result<Selection> {
         self.check(design.size())?;
+        let start = Bridge::start(design, self.lambda)?;
         let mut nu = self.nu;
-        let mut selection = self.descend(design, nu)?;
+        let mut selection = self.descend(start.clone(), nu)?;
+        let is_count = matches!(self.stop, Stop::Count(_));
         for _ in 0..HALVINGS {
-            if selection.trace.converged {
+            if selection.trace.converged || !is_count {
                 break;
             }
             nu /= 2.0;
-            match self.descend(design, nu) {
+            match self.descend(start.clone(), nu) {
                 // So small a prior leaves the last columns to rounding: what the larger one
                 // kept is as good as it gets.
                 Err(Error::Singular { .. }) => break,
@@ -102,17 +104,8 @@ impl Bridges {
     }
 
     /// From all columns down to those kept, at one ν/m.
-    fn descend(&self, design: &Design<'_>, nu: f64) -> Result<Selection> {
-        let (gram, correlations) = (design.gram(), design.correlations());
-        let targets = design.targets();
-        let mut bridge = Bridge {
-            kept: (0..design.size()).collect(),
-            weights: ridge(gram.as_ref(), correlations.as_ref(), self.lambda)?,
-            gram,
-            correlations,
-            energy: linalg::inner(targets, targets),
-            nu: nu * targets.ncols() as f64,
-        };
+    fn descend(&self, mut bridge: Bridge, nu: f64) -> Result<Selection> {
+        bridge.nu = nu * bridge.weights.ncols() as f64;
         let mut trace = Trace { converged: false, objective: Vec::new() };
         while trace.objective.len() < self.max_iterations && !bridge.kept.is_empty() {
             let change = bridge.step()?;
@@ -155,6 +148,7 @@ pub(crate) struct Selection {
 }
 
 /// The iteration's state, over the columns kept so far.
+#[derive(Clone)]
 struct Bridge {
     kept: Vec<usize>,
     gram: Mat<f64>,
@@ -167,6 +161,19 @@ struct Bridge {
 }
 
 impl Bridge {
+    /// All columns, with the weights of ridge regression; ν is still to be set.
+    fn start(design: &Design<'_>, lambda: f64) -> Result<Self> {
+        let (gram, correlations) = (design.gram(), design.correlations());
+        Ok(Self {
+            kept: (0..design.size()).collect(),
+            weights: ridge(gram.as_ref(), correlations.as_ref(), lambda)?,
+            gram,
+            correlations,
+            energy: linalg::inner(design.targets(), design.targets()),
+            nu: 0.0,
+        })
+    }
+
     /// Least squares with each column's bridge at its present norm.
     fn solve(&self) -> Result<Penalised> {
         let norms = linalg::row_norms(self.weights.as_ref());

@@ -25,6 +25,15 @@ impl Counts {
         };
         Self { lin_features, gauss_samples, both_features, both_samples }
     }
+
+    /// The same, but no more samples than there are.
+    pub(crate) fn at_most(self, samples: usize) -> Self {
+        Self {
+            gauss_samples: self.gauss_samples.min(samples),
+            both_samples: self.both_samples.min(samples),
+            ..self
+        }
+    }
 }
 
 /// A row's method.

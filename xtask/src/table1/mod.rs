@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Args;
-use phalanx::{OrientationRule, Progress, describe_poses};
+use phalanx::Progress;
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
 use rayon::prelude::*;
@@ -32,7 +32,8 @@ const SPLITS: u64 = 5;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// A trajectory to evaluate in place of ours: CSV, degrees.
+    /// A trajectory to evaluate in place of ours: CSV, degrees; where θ_Z does not vary in it,
+    /// each pose is repeated at seven angles from 0° to 90°.
     #[arg(long, value_name = "FILE.csv")]
     poses: Option<PathBuf>,
     /// Write the rows as JSON too.
@@ -65,35 +66,36 @@ struct Table {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let data_sets = match &arguments.poses {
+    let mut data_sets = match &arguments.poses {
         Some(path) => vec![DataSet::from_file("poses", path)?],
         None => vec![DataSet::stored("open-close")?, DataSet::stored("complex")?],
     };
     let (rig, hand, bar) = (files::rig(None)?, files::hand(None)?, progress::Bar::new());
     let mut rows = Vec::new();
-    for data_set in &data_sets {
+    for data_set in &mut data_sets {
         rows.extend(evaluate(data_set, &rig, &hand, &bar)?);
     }
     drop(bar);
+    print::print(&rows)?;
     let table = Table { rows };
     if let Some(path) = &arguments.json {
         let mut json = serde_json::to_vec_pretty(&table)?;
         json.push(b'\n');
         files::write_whole(path, &json)?;
     }
-    print::print(&table.rows);
     Ok(())
 }
 
 /// All rows of one data set.
 fn evaluate(
-    data_set: &DataSet,
+    data_set: &mut DataSet,
     rig: &Rig,
     hand: &HandShape,
     progress: &dyn Progress,
 ) -> Result<Vec<Row>> {
+    let contexts = data_set.describe(rig, hand, progress)?;
+    let data_set = &*data_set;
     let active = data_set.active_angles()?;
-    let contexts = describe_poses(rig, hand, &data_set.poses, OrientationRule::HandAxis, progress)?;
     let single = rig.cameras.iter().position(|camera| camera.name == SINGLE_VIEW);
     let single = single.with_context(|| format!("the rig has no camera '{SINGLE_VIEW}'"))?;
     let views = [vec![single], (0..rig.cameras.len()).collect::<Vec<_>>()];
@@ -112,7 +114,7 @@ fn evaluate(
                 split: Split::even(data_set.poses.len(), split),
                 seed: split,
             };
-            let outcomes = trial.run(&jobs(&data_set.name, views[v].len(), rig.cameras.len()));
+            let outcomes = trial.run(&jobs(data_set, views[v].len(), rig.cameras.len()));
             progress.step();
             outcomes
         })
@@ -130,11 +132,12 @@ struct Job {
     rows: Vec<&'static str>,
 }
 
-/// What is fitted on each split: every method at the paper's counts, and the selecting ones at
-/// the counts of the most views too, where those differ.
-fn jobs(data_set: &str, views: usize, most_views: usize) -> Vec<Job> {
-    let paper = Counts::paper(views, data_set);
-    let equal = Counts::paper(most_views, data_set);
+/// What is fitted on each split: every method at the paper's counts (of samples, as many as there
+/// are), and the selecting ones at the counts of the most views too, where those differ.
+fn jobs(data_set: &DataSet, views: usize, most_views: usize) -> Vec<Job> {
+    let train_samples = data_set.poses.len().div_ceil(2);
+    let counts = |views| Counts::paper(views, &data_set.name).at_most(train_samples);
+    let (paper, equal) = (counts(views), counts(most_views));
     let mut jobs = Vec::new();
     for method in Method::COUNTED {
         if paper == equal {

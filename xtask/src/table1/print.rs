@@ -2,8 +2,11 @@
 
 use comfy_table::{Table, presets};
 
+use anyhow::Result;
+
 use super::paper::PaperRow;
 use super::{Row, SPLITS};
+use crate::files;
 
 const HEADER: [&str; 12] = [
     "views",
@@ -20,14 +23,16 @@ const HEADER: [&str; 12] = [
     "paper which",
 ];
 
-pub(crate) fn print(rows: &[Row]) {
-    println!("Table 1. Mean of {SPLITS} random even splits; degrees over the active angles.");
-    println!("ratio: avg. over the error of predicting the training mean. ~: which of three cells");
-    println!("the paper's figure belongs to is a guess; ·: not legible.\n");
-    println!("At the paper's counts:");
-    println!("{}\n", table(rows.iter().filter(|row| row.counts == "paper")));
-    println!("At equal counts (those of three views):");
-    println!("{}", table(rows.iter().filter(|row| row.counts == "equal")));
+pub(crate) fn print(rows: &[Row]) -> Result<()> {
+    let of = |counts: &'static str| table(rows.iter().filter(move |row| row.counts == counts));
+    files::print(&format!(
+        "# Table 1\n\nPrinted by `cargo xtask eval-table1`: means of {SPLITS} random even splits, in degrees over the\n\
+         active angles. Ratio: avg. over the error of predicting the training mean. ~: to which of three\n\
+         cells the paper's figure belongs is a guess; ·: not legible.\n\n\
+         ## At the paper's counts\n\n{}\n\n## At equal counts: those of three views\n\n{}\n",
+        of("paper"),
+        of("equal")
+    ))
 }
 
 fn table<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {

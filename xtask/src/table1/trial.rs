@@ -9,7 +9,7 @@ use phalanx_multiview::Vocabulary;
 use phalanx_shape_context::BINS;
 
 use super::Job;
-use crate::metrics::AngleErrors;
+use crate::metrics::{AngleErrors, mean_predictor};
 use crate::neighbours::nearest_mean;
 use crate::split::Split;
 
@@ -97,16 +97,7 @@ impl Trial<'_> {
             train_samples: train_x.ncols(),
             test_samples: test_x.ncols(),
             errors: errors(estimates.as_ref()),
-            mean_predictor_mae_deg: errors(mean_of(train_y, test_y.ncols()).as_ref()).mae(),
+            mean_predictor_mae_deg: errors(mean_predictor(train_y, test_y.ncols()).as_ref()).mae(),
         })
     }
-}
-
-/// The training mean, once for each of `samples`.
-fn mean_of(targets: &Mat<f64>, samples: usize) -> Mat<f64> {
-    let mean = |row: usize| {
-        (0..targets.ncols()).map(|i| targets[(row, i)]).sum::<f64>() / targets.ncols() as f64
-    };
-    let means: Vec<f64> = (0..targets.nrows()).map(mean).collect();
-    Mat::from_fn(targets.nrows(), samples, |row, _| means[row])
 }

@@ -142,6 +142,7 @@ fn too_few_steps_are_reported_and_not_refused() {
     let (x, y) = (x.as_ref(), y.as_ref());
     let bridges = Bridges { max_iterations: 1, ..Bridges::default() }.fit(x, y).unwrap();
     assert!(!bridges.report.converged && bridges.report.iterations == 1);
+    assert_eq!(bridges.report.penalty, Some(Bridges::default().nu));
     let tipping = Tipping { max_iterations: 1, ..Tipping::default() }.fit(x, y).unwrap();
     assert!(!tipping.report.converged && tipping.report.iterations == 2);
 }
