@@ -88,8 +88,9 @@ fn decode(path: &Path) -> Result<DynamicImage> {
         image.apply_orientation(orientation);
         Ok(image)
     };
-    // An image error's text tells its cause already, and may end in a blank line.
-    decoded().map_err(|error| anyhow!("{}", error.to_string().trim_end()))
+    // An image error's text tells its cause already. The JPEG decoder quotes some causes together
+    // with the end of their line.
+    decoded().map_err(|error| anyhow!("{}", error.to_string().replace("\\n\"", "\"")))
 }
 
 /// Whether a JPEG file stops before its end-of-image mark. The decoder would fill the rest with
