@@ -87,13 +87,17 @@ pub(crate) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
+/// The length; squares do not underflow.
 pub(crate) fn norm(a: [f64; 2]) -> f64 {
-    dot(a, a).sqrt()
+    a[0].hypot(a[1])
 }
 
+/// The direction of anything but zero, however small.
 pub(crate) fn unit(a: [f64; 2]) -> [f64; 2] {
-    let length = norm(a);
-    [a[0] / length, a[1] / length]
+    let largest = a[0].abs().max(a[1].abs());
+    let scaled = a.map(|component| component / largest);
+    let length = norm(scaled);
+    scaled.map(|component| component / length)
 }
 
 /// A quarter turn from +x towards +y.

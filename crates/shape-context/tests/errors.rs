@@ -56,6 +56,22 @@ fn shapes_without_a_direction() {
     assert_eq!(error(&stuck, tangent), Error::NoTangent { point: 0 });
 }
 
+/// A direction is a unit vector even where the squares of its components underflow.
+#[test]
+fn neighbours_that_almost_coincide() {
+    let points =
+        [[0.0, -8e-9], [-7e-9, 0.0], [0.0, 0.0], [5e-160, 0.0], [0.0, 3e-320], [4e-320, 0.0]];
+    for chain in [Chain::Open, Chain::Closed] {
+        let mut contexts = ShapeContexts::new();
+        if let Ok(found) = contexts.compute(&points, Orientation::Tangent { chain }) {
+            for point in 0..points.len() {
+                let [x, y] = found.axis(point);
+                assert!((x.hypot(y) - 1.0).abs() < 1e-12, "{chain:?} {point}: {x} {y}");
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..Default::default() })]
 
