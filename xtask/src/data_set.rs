@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use anyhow::{Result, bail};
-use phalanx::{OrientationRule, PoseContexts, Progress, describe_each_pose};
+use phalanx::{OrientationRule, Progress, describe_each_pose};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, Unit};
 
+use crate::described::Described;
 use crate::files;
 
 /// The paper's seven angles about the forearm, degrees.
@@ -49,50 +50,46 @@ impl DataSet {
     /// left out of the set, and said so on standard error.
     ///
     /// # Errors
-    /// An unusable rig, or fewer than four poses left: two to learn from and two to test on.
+    /// An unusable rig, fewer than four poses left (two to learn from and two to test on), or
+    /// poses of which no angle varies.
     pub(crate) fn describe(
-        &mut self,
+        self,
         rig: &Rig,
         hand: &HandShape,
         progress: &dyn Progress,
-    ) -> Result<Vec<PoseContexts>> {
-        let all = self.poses.len();
+    ) -> Result<Described> {
+        let (name, all) = (self.name, self.poses.len());
         let results =
             describe_each_pose(rig, hand, &self.poses, OrientationRule::HandAxis, progress)?;
-        let (mut kept, mut contexts, mut first) = (Vec::new(), Vec::new(), None);
-        for (pose, result) in self.poses.iter().zip(results) {
+        let (mut poses, mut contexts, mut first) = (Vec::new(), Vec::new(), None);
+        for (pose, result) in self.poses.into_iter().zip(results) {
             match result {
                 Ok(described) => {
-                    kept.push(*pose);
+                    poses.push(pose);
                     contexts.push(described);
                 }
                 Err(error) => first = first.or(Some(error)),
             }
         }
-        self.poses = kept;
         if let Some(error) = first {
-            let left_out = all - self.poses.len();
-            eprintln!(
-                "{}: {left_out} of {all} poses are left out; the first: {error:#}",
-                self.name
-            );
+            let left_out = all - poses.len();
+            eprintln!("{name}: {left_out} of {all} poses are left out; the first: {error:#}");
         }
-        if self.poses.len() < 4 {
-            bail!("data set '{}': {} poses are too few to split", self.name, self.poses.len());
+        if poses.len() < 4 {
+            bail!("data set '{name}': {} poses are too few to split", poses.len());
         }
-        Ok(contexts)
-    }
-
-    /// The angles that vary: those over which errors are averaged.
-    pub(crate) fn active_angles(&self) -> Result<Vec<Dof>> {
-        let varies = |dof: &Dof| self.poses.iter().any(|pose| pose[*dof] != self.poses[0][*dof]);
-        let active: Vec<Dof> =
-            Dof::ALL.into_iter().filter(|dof| dof.unit() == Unit::Angle).filter(varies).collect();
+        let active = active_angles(&poses);
         if active.is_empty() {
-            bail!("data set '{}': no angle varies", self.name);
+            bail!("data set '{name}': no angle varies");
         }
-        Ok(active)
+        Ok(Described { name, poses, contexts, active })
     }
+}
+
+/// The angles that vary: those over which errors are averaged.
+pub(crate) fn active_angles(poses: &[Pose]) -> Vec<Dof> {
+    let varies = |dof: &Dof| poses.iter().any(|pose| pose[*dof] != poses[0][*dof]);
+    Dof::ALL.into_iter().filter(|dof| dof.unit() == Unit::Angle).filter(varies).collect()
 }
 
 /// Every pose at each of the seven angles, frame by frame.

@@ -2,6 +2,7 @@
 
 mod contact_sheet;
 mod data_set;
+mod described;
 mod files;
 mod fixtures;
 mod metrics;

@@ -37,7 +37,11 @@ impl Vocabulary {
     /// # Errors
     /// No view, views that differ in number between samples, a view that is not a whole number
     /// of shape contexts, or what clustering reports.
-    pub fn fit<S: AsRef<[Vec<f32>]>>(&self, contexts: &[S], dim: usize) -> Result<Concatenation> {
+    pub fn fit<S, V>(&self, contexts: &[S], dim: usize) -> Result<Concatenation>
+    where
+        S: AsRef<[V]>,
+        V: AsRef<[f32]>,
+    {
         let views = check(contexts, dim)?;
         let codebooks = (0..views).map(|view| {
             let clustering = KMeans {
@@ -53,7 +57,7 @@ impl Vocabulary {
 }
 
 /// The number of views, once every sample has as many and each is whole shape contexts.
-fn check<S: AsRef<[Vec<f32>]>>(contexts: &[S], dim: usize) -> Result<usize> {
+fn check<S: AsRef<[V]>, V: AsRef<[f32]>>(contexts: &[S], dim: usize) -> Result<usize> {
     let views = contexts.first().map_or(0, |sample| sample.as_ref().len());
     if views == 0 {
         return Err(Error::NoViews);
@@ -62,7 +66,7 @@ fn check<S: AsRef<[Vec<f32>]>>(contexts: &[S], dim: usize) -> Result<usize> {
         if of_views.len() != views {
             return Err(Error::ViewCount { expected: views, found: of_views.len() });
         }
-        for (view, values) in of_views.iter().map(Vec::len).enumerate() {
+        for (view, values) in of_views.iter().map(|view| view.as_ref().len()).enumerate() {
             if dim == 0 || !values.is_multiple_of(dim) {
                 return Err(Error::Shape { sample, view, values, dim });
             }
@@ -72,14 +76,14 @@ fn check<S: AsRef<[Vec<f32>]>>(contexts: &[S], dim: usize) -> Result<usize> {
 }
 
 /// At most `most` of the shape contexts of one view of all samples, evenly spaced.
-fn evenly_spaced<S: AsRef<[Vec<f32>]>>(
+fn evenly_spaced<S: AsRef<[V]>, V: AsRef<[f32]>>(
     contexts: &[S],
     view: usize,
     dim: usize,
     most: usize,
 ) -> Vec<f32> {
-    let of_view = || contexts.iter().map(|sample| &sample.as_ref()[view]);
-    let total = of_view().map(Vec::len).sum::<usize>() / dim;
+    let of_view = || contexts.iter().map(|sample| sample.as_ref()[view].as_ref());
+    let total = of_view().map(<[f32]>::len).sum::<usize>() / dim;
     let kept = total.min(most);
     let mut spaced = Vec::with_capacity(kept * dim);
     let mut taken = 0;

@@ -9,7 +9,7 @@ use phalanx_rvm::{
 };
 use rayon::prelude::*;
 
-use crate::{Error, Estimator, OrientationRule, PoseContexts, Progress, Result, describe_poses};
+use crate::{Error, Estimator, OrientationRule, Progress, Result, describe_poses};
 
 /// How an estimator is learnt. The default is the paper's recipe with dense kernel regression.
 ///
@@ -110,13 +110,17 @@ impl Training {
 ///
 /// # Errors
 /// What the codebooks say of the contexts.
-pub fn descriptors(views: &Concatenation, contexts: &[PoseContexts]) -> Result<Mat<f64>> {
+pub fn descriptors<S, V>(views: &Concatenation, contexts: &[S]) -> Result<Mat<f64>>
+where
+    S: AsRef<[V]> + Sync,
+    V: AsRef<[f32]>,
+{
     let mut x = Mat::zeros(views.dim(), contexts.len());
     let columns: Vec<Result<Vec<f64>>> = contexts
         .par_iter()
         .map_init(Scratch::default, |scratch, sample| {
             let mut column = vec![0.0; views.dim()];
-            views.describe(sample, scratch, &mut column)?;
+            views.describe(sample.as_ref(), scratch, &mut column)?;
             Ok(column)
         })
         .collect();

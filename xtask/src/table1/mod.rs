@@ -11,17 +11,16 @@ use anyhow::{Context, Result};
 use clap::Args;
 use phalanx::Progress;
 use phalanx_camera::Rig;
-use phalanx_hand::HandShape;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::data_set::DataSet;
+use crate::described::Described;
 use crate::metrics::AngleErrors;
-use crate::split::Split;
 use crate::{files, progress};
 use method::{Counts, Method};
 use paper::PaperRow;
-use trial::{Outcome, Trial};
+use trial::Outcome;
 
 pub(crate) use method::{Counts as PaperCounts, Method as TableMethod};
 
@@ -43,21 +42,21 @@ pub(crate) struct Arguments {
 
 /// One row of the table.
 #[derive(Serialize)]
-struct Row {
-    views: usize,
-    data_set: String,
-    kernels: &'static str,
-    counts: &'static str,
-    selected_features: usize,
-    selected_samples: usize,
-    train_samples: usize,
-    test_samples: usize,
-    mae_deg: f64,
-    std_deg: f64,
-    worst_deg: f64,
-    worst_dof: &'static str,
-    mean_predictor_mae_deg: f64,
-    paper: Option<PaperRow>,
+pub(crate) struct Row {
+    pub(crate) views: usize,
+    pub(crate) data_set: String,
+    pub(crate) kernels: &'static str,
+    pub(crate) counts: &'static str,
+    pub(crate) selected_features: usize,
+    pub(crate) selected_samples: usize,
+    pub(crate) train_samples: usize,
+    pub(crate) test_samples: usize,
+    pub(crate) mae_deg: f64,
+    pub(crate) std_deg: f64,
+    pub(crate) worst_deg: f64,
+    pub(crate) worst_dof: &'static str,
+    pub(crate) mean_predictor_mae_deg: f64,
+    pub(crate) paper: Option<PaperRow>,
 }
 
 #[derive(Serialize)]
@@ -66,14 +65,16 @@ struct Table {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let mut data_sets = match &arguments.poses {
+    let data_sets = match &arguments.poses {
         Some(path) => vec![DataSet::from_file("poses", path)?],
         None => vec![DataSet::stored("open-close")?, DataSet::stored("complex")?],
     };
     let (rig, hand, bar) = (files::rig(None)?, files::hand(None)?, progress::Bar::new());
     let mut rows = Vec::new();
-    for data_set in &mut data_sets {
-        rows.extend(evaluate(data_set, &rig, &hand, &bar)?);
+    let views = [vec![single_view(&rig)?], (0..rig.cameras.len()).collect()];
+    for data_set in data_sets {
+        let described = data_set.describe(&rig, &hand, &bar)?;
+        rows.extend(evaluate(&described, &views, &bar)?);
     }
     drop(bar);
     print::print(&rows)?;
@@ -86,41 +87,34 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-/// All rows of one data set.
-fn evaluate(
-    data_set: &mut DataSet,
-    rig: &Rig,
-    hand: &HandShape,
+/// The camera of the single-view rows, by its number.
+pub(crate) fn single_view(rig: &Rig) -> Result<usize> {
+    let single = rig.cameras.iter().position(|camera| camera.name == SINGLE_VIEW);
+    single.with_context(|| format!("the rig has no camera '{SINGLE_VIEW}'"))
+}
+
+/// All rows of one data set, for one choice of cameras after the other.
+pub(crate) fn evaluate(
+    data_set: &Described,
+    views: &[Vec<usize>],
     progress: &dyn Progress,
 ) -> Result<Vec<Row>> {
-    let contexts = data_set.describe(rig, hand, progress)?;
-    let data_set = &*data_set;
-    let active = data_set.active_angles()?;
-    let single = rig.cameras.iter().position(|camera| camera.name == SINGLE_VIEW);
-    let single = single.with_context(|| format!("the rig has no camera '{SINGLE_VIEW}'"))?;
-    let views = [vec![single], (0..rig.cameras.len()).collect::<Vec<_>>()];
-
-    let runs: Vec<(usize, u64)> =
-        (0..views.len()).flat_map(|v| (0..SPLITS).map(move |s| (v, s))).collect();
+    let most_views = views.iter().map(Vec::len).max().unwrap_or(0);
+    let runs: Vec<(&[usize], u64)> =
+        views.iter().flat_map(|v| (0..SPLITS).map(move |split| (v.as_slice(), split))).collect();
     progress.begin("split, cluster, fit, test", runs.len());
     let trials: Vec<Result<Vec<(Job, Outcome)>>> = runs
         .par_iter()
-        .map(|&(v, split)| {
-            let trial = Trial {
-                contexts: &contexts,
-                poses: &data_set.poses,
-                views: &views[v],
-                active: &active,
-                split: Split::even(data_set.poses.len(), split),
-                seed: split,
-            };
-            let outcomes = trial.run(&jobs(data_set, views[v].len(), rig.cameras.len()));
+        .map(|&(views, split)| {
+            let halves = data_set.halves(views, split)?;
+            let outcomes =
+                trial::run(&halves, &data_set.active, &jobs(data_set, views.len(), most_views));
             progress.step();
             outcomes
         })
         .collect();
     let trials = trials.into_iter().collect::<Result<Vec<_>>>()?;
-    let per_views = trials.chunks(SPLITS as usize).zip(&views);
+    let per_views = trials.chunks(SPLITS as usize).zip(views);
     Ok(per_views.flat_map(|(trials, views)| rows(&data_set.name, views.len(), trials)).collect())
 }
 
@@ -134,7 +128,7 @@ struct Job {
 
 /// What is fitted on each split: every method at the paper's counts (of samples, as many as there
 /// are), and the selecting ones at the counts of the most views too, where those differ.
-fn jobs(data_set: &DataSet, views: usize, most_views: usize) -> Vec<Job> {
+fn jobs(data_set: &Described, views: usize, most_views: usize) -> Vec<Job> {
     let train_samples = data_set.poses.len().div_ceil(2);
     let counts = |views| Counts::paper(views, &data_set.name).at_most(train_samples);
     let (paper, equal) = (counts(views), counts(most_views));

@@ -1,28 +1,13 @@
 //! One split of a data set: codebooks, descriptors and every method's errors.
 
 use anyhow::{Context, Result};
-use faer::{Mat, MatRef};
-use phalanx::PoseContexts;
-use phalanx_codebook::KMeans;
-use phalanx_hand::{Dof, Pose};
-use phalanx_multiview::Vocabulary;
-use phalanx_shape_context::BINS;
+use faer::MatRef;
+use phalanx_hand::Dof;
 
 use super::Job;
+use crate::described::{Halves, Samples};
 use crate::metrics::{AngleErrors, mean_predictor};
 use crate::neighbours::nearest_mean;
-use crate::split::Split;
-
-/// What is evaluated: some views of a data set under one split. Codebooks, scaling and
-/// regressors see the training half only.
-pub(crate) struct Trial<'a> {
-    pub(crate) contexts: &'a [PoseContexts],
-    pub(crate) poses: &'a [Pose],
-    pub(crate) views: &'a [usize],
-    pub(crate) active: &'a [Dof],
-    pub(crate) split: Split,
-    pub(crate) seed: u64,
-}
 
 /// How one method did.
 pub(crate) struct Outcome {
@@ -35,69 +20,35 @@ pub(crate) struct Outcome {
     pub(crate) mean_predictor_mae_deg: f64,
 }
 
-/// Descriptors and poses of the two halves.
-struct Halves {
-    train_x: Mat<f64>,
-    train_y: Mat<f64>,
-    test_x: Mat<f64>,
-    test_y: Mat<f64>,
+/// Every job's outcome on one split; errors are averaged over `active`.
+pub(crate) fn run(halves: &Halves, active: &[Dof], jobs: &[Job]) -> Result<Vec<(Job, Outcome)>> {
+    let outcome = |job: &Job| {
+        let outcome = outcome(halves, active, job).with_context(|| job.method.name())?;
+        Ok((job.clone(), outcome))
+    };
+    jobs.iter().map(outcome).collect()
 }
 
-impl Trial<'_> {
-    pub(crate) fn run(&self, jobs: &[Job]) -> Result<Vec<(Job, Outcome)>> {
-        let halves = self.halves()?;
-        let outcome = |job: &Job| {
-            let outcome = self.outcome(job, &halves).with_context(|| job.method.name())?;
-            Ok((job.clone(), outcome))
-        };
-        jobs.iter().map(outcome).collect()
-    }
-
-    fn halves(&self) -> Result<Halves> {
-        let train = self.contexts_of(&self.split.train);
-        let vocabulary = Vocabulary {
-            clustering: KMeans { seed: self.seed, ..Vocabulary::default().clustering },
-            ..Vocabulary::default()
-        };
-        let views = vocabulary.fit(&train, BINS)?;
-        Ok(Halves {
-            train_x: phalanx::descriptors(&views, &train)?,
-            train_y: self.targets_of(&self.split.train),
-            test_x: phalanx::descriptors(&views, &self.contexts_of(&self.split.test))?,
-            test_y: self.targets_of(&self.split.test),
-        })
-    }
-
-    fn contexts_of(&self, samples: &[usize]) -> Vec<PoseContexts> {
-        let of = |&i: &usize| self.views.iter().map(|&v| self.contexts[i][v].clone()).collect();
-        samples.iter().map(of).collect()
-    }
-
-    fn targets_of(&self, samples: &[usize]) -> Mat<f64> {
-        phalanx::targets(&samples.iter().map(|&i| self.poses[i]).collect::<Vec<_>>())
-    }
-
-    fn outcome(&self, job: &Job, halves: &Halves) -> Result<Outcome> {
-        let Halves { train_x, train_y, test_x, test_y } = halves;
-        let (features, samples, estimates) = if let Some(fitter) = job.method.regressor(job.counts)
-        {
-            let model = fitter.fit(train_x, train_y)?.model;
-            let (features, samples) = (model.selected_features(), model.kept_samples());
-            (features.len(), samples.len(), model.predict(test_x.as_ref())?)
-        } else {
-            let (x, y) = (train_x.as_ref(), train_y.as_ref());
-            let estimates = nearest_mean(x, y, test_x.as_ref(), 5);
-            (train_x.nrows(), train_x.ncols(), estimates)
-        };
-        let errors =
-            |estimates: MatRef<'_, f64>| AngleErrors::new(estimates, test_y.as_ref(), self.active);
-        Ok(Outcome {
-            selected_features: features,
-            selected_samples: samples,
-            train_samples: train_x.ncols(),
-            test_samples: test_x.ncols(),
-            errors: errors(estimates.as_ref()),
-            mean_predictor_mae_deg: errors(mean_predictor(train_y, test_y.ncols()).as_ref()).mae(),
-        })
-    }
+fn outcome(halves: &Halves, active: &[Dof], job: &Job) -> Result<Outcome> {
+    let Halves { train, test, .. } = halves;
+    let (features, samples, estimates) = if let Some(fitter) = job.method.regressor(job.counts) {
+        let model = fitter.fit(&train.x, &train.y)?.model;
+        let (features, samples) = (model.selected_features(), model.kept_samples());
+        (features.len(), samples.len(), model.predict(test.x.as_ref())?)
+    } else {
+        let Samples { x, y } = train;
+        let estimates = nearest_mean(x.as_ref(), y.as_ref(), test.x.as_ref(), 5);
+        (x.nrows(), x.ncols(), estimates)
+    };
+    let errors =
+        |estimates: MatRef<'_, f64>| AngleErrors::new(estimates, test.y.as_ref(), active);
+    let guesses = mean_predictor(&train.y, test.y.ncols());
+    Ok(Outcome {
+        selected_features: features,
+        selected_samples: samples,
+        train_samples: train.x.ncols(),
+        test_samples: test.x.ncols(),
+        errors: errors(estimates.as_ref()),
+        mean_predictor_mae_deg: errors(guesses.as_ref()).mae(),
+    })
 }

@@ -1,0 +1,84 @@
+//! A data set with what every camera sees of it, and its descriptors.
+
+use anyhow::Result;
+use faer::Mat;
+use phalanx::PoseContexts;
+use phalanx_codebook::KMeans;
+use phalanx_hand::{Dof, Pose};
+use phalanx_multiview::{Concatenation, Vocabulary};
+use phalanx_shape_context::BINS;
+
+use crate::split::Split;
+
+/// Poses and their shape contexts in every camera of a rig.
+pub(crate) struct Described {
+    pub(crate) name: String,
+    pub(crate) poses: Vec<Pose>,
+    /// Of each pose, camera by camera.
+    pub(crate) contexts: Vec<PoseContexts>,
+    /// The angles that vary: those over which errors are averaged.
+    pub(crate) active: Vec<Dof>,
+}
+
+/// Descriptors x (K × I) and poses y (28 × I).
+pub(crate) struct Samples {
+    pub(crate) x: Mat<f64>,
+    pub(crate) y: Mat<f64>,
+}
+
+/// The two halves of a split. Codebooks see the training half only.
+pub(crate) struct Halves {
+    pub(crate) split: Split,
+    pub(crate) codebooks: Concatenation,
+    pub(crate) train: Samples,
+    pub(crate) test: Samples,
+}
+
+impl Described {
+    /// The even split of this seed as some of the cameras, given by their numbers, see it.
+    pub(crate) fn halves(&self, views: &[usize], seed: u64) -> Result<Halves> {
+        let split = Split::even(self.poses.len(), seed);
+        let codebooks = self.codebooks(views, &split.train, seed)?;
+        Ok(Halves {
+            train: self.samples(&codebooks, views, &split.train)?,
+            test: self.samples(&codebooks, views, &split.test)?,
+            codebooks,
+            split,
+        })
+    }
+
+    /// All samples as some of the cameras see them, with codebooks learnt from all of them.
+    pub(crate) fn whole(&self, views: &[usize], seed: u64) -> Result<(Concatenation, Samples)> {
+        let all: Vec<usize> = (0..self.poses.len()).collect();
+        let codebooks = self.codebooks(views, &all, seed)?;
+        let samples = self.samples(&codebooks, views, &all)?;
+        Ok((codebooks, samples))
+    }
+
+    /// The paper's codebooks, learnt from some samples.
+    fn codebooks(&self, views: &[usize], samples: &[usize], seed: u64) -> Result<Concatenation> {
+        let vocabulary = Vocabulary {
+            clustering: KMeans { seed, ..Vocabulary::default().clustering },
+            ..Vocabulary::default()
+        };
+        Ok(vocabulary.fit(&self.seen(views, samples), BINS)?)
+    }
+
+    /// Descriptors and poses of some samples.
+    fn samples(
+        &self,
+        codebooks: &Concatenation,
+        views: &[usize],
+        samples: &[usize],
+    ) -> Result<Samples> {
+        let poses: Vec<Pose> = samples.iter().map(|&i| self.poses[i]).collect();
+        let x = phalanx::descriptors(codebooks, &self.seen(views, samples))?;
+        Ok(Samples { x, y: phalanx::targets(&poses) })
+    }
+
+    /// The shape contexts of some samples in some of the cameras.
+    pub(crate) fn seen(&self, views: &[usize], samples: &[usize]) -> Vec<Vec<&[f32]>> {
+        let of = |&i: &usize| views.iter().map(|&v| self.contexts[i][v].as_slice()).collect();
+        samples.iter().map(of).collect()
+    }
+}
