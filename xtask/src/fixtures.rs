@@ -2,13 +2,13 @@
 
 use anyhow::{Result, bail};
 use clap::Args;
-use faer::{Mat, Side};
 use phalanx::draw_silhouette;
 use phalanx_camera::Camera;
 use phalanx_hand::{Dof, HandShape, Pose, write_poses};
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
+use crate::principal_axes::PrincipalAxes;
 use crate::{data_set, files, metrics, trajectories};
 
 #[derive(Args)]
@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         }
     }
     for (name, frames) in [("open-close", &open_close), ("complex", &complex)] {
-        let (difficulty, coverage) = (Difficulty::of(frames), Coverage::of(frames)?);
+        let (difficulty, coverage) = (Difficulty::of(frames)?, Coverage::of(frames)?);
         files::print(&format!("{name}: {difficulty}\n{name}: {coverage}\n"))?;
     }
     Ok(())
@@ -61,12 +61,12 @@ struct Difficulty {
 }
 
 impl Difficulty {
-    fn of(frames: &[Pose]) -> Self {
-        Self {
+    fn of(frames: &[Pose]) -> Result<Self> {
+        Ok(Self {
             frames: frames.len(),
             mean_predictor_mae_deg: mean_predictor_mae_deg(frames),
-            components: components_for(0.95, frames),
-        }
+            components: components(frames)?,
+        })
     }
 }
 
@@ -134,25 +134,8 @@ fn mean_predictor_mae_deg(frames: &[Pose]) -> f64 {
     metrics::AngleErrors::new(guess.as_ref(), truth.as_ref(), &active).mae()
 }
 
-/// How many principal components of the 20 internal angles hold `share` of their variance.
-fn components_for(share: f64, frames: &[Pose]) -> usize {
+/// How many principal components hold 95 % of the variance of the internal angles.
+fn components(frames: &[Pose]) -> Result<usize> {
     let angles = phalanx::targets(frames);
-    let mean = metrics::mean_predictor(&angles, 1);
-    let covariance = Mat::from_fn(Dof::INTERNAL, Dof::INTERNAL, |a, b| -> f64 {
-        (0..frames.len())
-            .map(|i| (angles[(a, i)] - mean[(a, 0)]) * (angles[(b, i)] - mean[(b, 0)]))
-            .sum()
-    });
-    let mut variances =
-        covariance.self_adjoint_eigenvalues(Side::Lower).expect("a covariance has eigenvalues");
-    variances.sort_by(|a, b| b.total_cmp(a));
-    let total: f64 = variances.iter().sum();
-    let mut held = 0.0;
-    1 + variances
-        .iter()
-        .take_while(|variance| {
-            held += **variance;
-            held < share * total
-        })
-        .count()
+    Ok(PrincipalAxes::of(angles.as_ref().subrows(0, Dof::INTERNAL))?.holding(0.95))
 }

@@ -1,14 +1,18 @@
 //! The experiments and chores of phalanx.
 
+mod chart;
 mod contact_sheet;
 mod data_set;
 mod described;
+mod experiments;
 mod files;
 mod fixtures;
+mod lab;
 mod metrics;
 mod neighbours;
 mod performance;
 mod pictures;
+mod principal_axes;
 mod progress;
 mod saturation;
 mod skin_model;
@@ -40,6 +44,8 @@ enum Command {
     /// Reproduce the paper's Table 1 beside its own figures.
     #[command(name = "eval-table1")]
     EvalTable1(table1::Arguments),
+    /// Put one of the paper's figures or claims to the test.
+    Experiment(experiments::Arguments),
     /// Regenerate the files in fixtures/, or check that they are as generated.
     Fixtures(fixtures::Arguments),
     /// Train the skin model that the segmentation crate ships.
@@ -63,11 +69,14 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<()> {
+    // faer's eigenvalues depend in their last bits on how many threads compute them.
+    faer::set_global_parallelism(faer::Par::Seq);
     let threads = arguments.threads.unwrap_or(0);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.context("starting worker threads")?.install(|| match &arguments.command {
         Command::Train(arguments) => train::run(arguments),
         Command::EvalTable1(arguments) => table1::run(arguments),
+        Command::Experiment(arguments) => experiments::run(arguments),
         Command::Fixtures(arguments) => fixtures::run(arguments),
         Command::SkinModel(arguments) => skin_model::run(arguments),
         Command::ContactSheet(arguments) => contact_sheet::run(arguments),

@@ -40,8 +40,7 @@ fn outcome(halves: &Halves, active: &[Dof], job: &Job) -> Result<Outcome> {
         let estimates = nearest_mean(x.as_ref(), y.as_ref(), test.x.as_ref(), 5);
         (x.nrows(), x.ncols(), estimates)
     };
-    let errors =
-        |estimates: MatRef<'_, f64>| AngleErrors::new(estimates, test.y.as_ref(), active);
+    let errors = |estimates: MatRef<'_, f64>| AngleErrors::new(estimates, test.y.as_ref(), active);
     let guesses = mean_predictor(&train.y, test.y.ncols());
     Ok(Outcome {
         selected_features: features,

@@ -1,0 +1,253 @@
+//! Plots of the experiments, as SVG.
+
+use std::fmt::Display;
+use std::ops::Range;
+
+use anyhow::{Result, anyhow};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Width and height of a plot, px: legible on a telephone, three beside each other on a desk.
+const SIZE: (u32, u32) = (460, 330);
+const TEXT: (&str, u32) = ("sans-serif", 16);
+/// Height of a line of the legend, and an upper bound of the width of its letters, px.
+const LEGEND: (i32, i32) = (18, 8);
+/// Colours that the colour-blind can tell apart (Okabe and Ito 2008).
+const PALETTE: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(90, 90, 90),
+];
+
+/// One quantity along an axis.
+pub(crate) struct Axis {
+    /// What it is, with its unit.
+    pub(crate) label: &'static str,
+    pub(crate) scale: Scale,
+}
+
+/// How values lie along an axis.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Scale {
+    Linear,
+    /// Linear, and 0 is shown whatever the values are.
+    FromZero,
+    /// By powers of ten; values are above 0.
+    Logarithmic,
+}
+
+impl Axis {
+    pub(crate) fn linear(label: &'static str) -> Self {
+        Self { label, scale: Scale::Linear }
+    }
+
+    pub(crate) fn from_zero(label: &'static str) -> Self {
+        Self { label, scale: Scale::FromZero }
+    }
+
+    pub(crate) fn logarithmic(label: &'static str) -> Self {
+        Self { label, scale: Scale::Logarithmic }
+    }
+
+    fn place(&self, value: f64) -> f64 {
+        if self.scale == Scale::Logarithmic { value.log10() } else { value }
+    }
+
+    /// What the values cover, with some room.
+    fn range(&self, values: impl Iterator<Item = f64>) -> Range<f64> {
+        let values = values.map(|value| self.place(value)).filter(|value| value.is_finite());
+        let (mut low, mut high) =
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        if self.scale == Scale::FromZero {
+            low = low.min(0.0);
+        }
+        if low > high {
+            (low, high) = (0.0, 1.0);
+        }
+        let room = 0.05 * (high - low).max(1e-9);
+        let at_zero = self.scale == Scale::FromZero && low == 0.0;
+        (if at_zero { 0.0 } else { low - room })..(high + room)
+    }
+
+    fn tick(&self, place: f64) -> String {
+        let value = if self.scale == Scale::Logarithmic { 10_f64.powf(place) } else { place };
+        match value.abs() {
+            0.0 => "0".to_owned(),
+            size if size < 0.01 || size >= 1e5 => format!("{value:.0e}"),
+            size if size < 1.0 => trimmed(&format!("{value:.2}")).to_owned(),
+            size if size < 10.0 => trimmed(&format!("{value:.1}")).to_owned(),
+            _ => format!("{value:.0}"),
+        }
+    }
+}
+
+/// A decimal number without the zeros at its end.
+fn trimmed(number: &str) -> &str {
+    number.trim_end_matches('0').trim_end_matches('.')
+}
+
+/// Points that belong together.
+pub(crate) struct Series {
+    pub(crate) name: String,
+    pub(crate) points: Vec<(f64, f64)>,
+    pub(crate) mark: Mark,
+}
+
+/// How a series is drawn.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Mark {
+    Line,
+    LineAndDots,
+    Dots,
+}
+
+impl Series {
+    pub(crate) fn new(name: impl Display, mark: Mark, points: Vec<(f64, f64)>) -> Self {
+        Self { name: name.to_string(), points, mark }
+    }
+}
+
+/// Series over two axes.
+pub(crate) struct Chart {
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
+    pub(crate) series: Vec<Series>,
+}
+
+impl Chart {
+    /// The plot. Every series has a colour of its own and is named above, if there are several.
+    pub(crate) fn svg(&self) -> Result<String> {
+        draw(|area| {
+            let named = if self.series.len() > 1 { self.legend() } else { Vec::new() };
+            let height = named.last().map_or(0, |&(_, y, _)| y + LEGEND.0);
+            let (strip, area) = area.split_vertically(height);
+            for (series, y, x) in named {
+                let colour = colour(series);
+                let dash = Rectangle::new([(x, y + 10), (x + 16, y + 13)], colour.filled());
+                strip.draw(&dash)?;
+                let left = TEXT.into_text_style(&strip).pos(Pos::new(HPos::Left, VPos::Center));
+                strip.draw(&Text::new(
+                    self.series[series].name.as_str(),
+                    (x + 20, y + 12),
+                    left,
+                ))?;
+            }
+            self.plot(&area)
+        })
+    }
+
+    /// Where each series' name stands above the plot: which series, y and x.
+    fn legend(&self) -> Vec<(usize, i32, i32)> {
+        let (mut x, mut y) = (56, 2);
+        let mut places = Vec::new();
+        for (k, series) in self.series.iter().enumerate() {
+            let width = 32 + LEGEND.1 * series.name.chars().count() as i32;
+            if x > 56 && x + width > SIZE.0 as i32 {
+                (x, y) = (56, y + LEGEND.0);
+            }
+            places.push((k, y, x));
+            x += width;
+        }
+        places
+    }
+
+    fn plot(&self, area: &Canvas<'_>) -> Drawn {
+        let points = || self.series.iter().flat_map(|series| series.points.iter());
+        let x = self.x.range(points().map(|p| p.0));
+        let y = self.y.range(points().map(|p| p.1));
+        let mut chart = ChartBuilder::on(area)
+            .margin(8)
+            .x_label_area_size(44)
+            .y_label_area_size(56)
+            .build_cartesian_2d(x, y)?;
+        chart
+            .configure_mesh()
+            .x_labels(6)
+            .y_labels(6)
+            .light_line_style(TRANSPARENT)
+            .x_desc(self.x.label)
+            .y_desc(self.y.label)
+            .x_label_formatter(&|x| self.x.tick(*x))
+            .y_label_formatter(&|y| self.y.tick(*y))
+            .label_style(TEXT)
+            .axis_desc_style(TEXT)
+            .draw()?;
+        for (k, series) in self.series.iter().enumerate() {
+            let colour = colour(k);
+            let points: Vec<(f64, f64)> =
+                series.points.iter().map(|p| (self.x.place(p.0), self.y.place(p.1))).collect();
+            if series.mark != Mark::Dots {
+                chart
+                    .draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(2)))?;
+            }
+            let radius = if series.mark == Mark::Dots { 2 } else { 3 };
+            let dots = points.into_iter().filter(|_| series.mark != Mark::Line);
+            chart.draw_series(dots.map(|point| Circle::new(point, radius, colour.filled())))?;
+        }
+        Ok(())
+    }
+}
+
+fn colour(series: usize) -> RGBColor {
+    PALETTE[series % PALETTE.len()]
+}
+
+/// Which cells of a matrix are set.
+pub(crate) struct CellMap {
+    /// What columns and rows are.
+    pub(crate) x: &'static str,
+    pub(crate) y: &'static str,
+    /// Row by row, each of as many cells.
+    pub(crate) rows: Vec<Vec<bool>>,
+}
+
+impl CellMap {
+    pub(crate) fn svg(&self) -> Result<String> {
+        draw(|area| {
+            let columns = self.rows.first().map_or(0, Vec::len) as i32;
+            let rows = self.rows.len() as i32;
+            let mut chart = ChartBuilder::on(area)
+                .margin(8)
+                .x_label_area_size(44)
+                .y_label_area_size(56)
+                .build_cartesian_2d(0..columns, rows..0)?;
+            chart
+                .configure_mesh()
+                .disable_mesh()
+                .x_labels(6)
+                .y_labels(6)
+                .x_desc(self.x)
+                .y_desc(self.y)
+                .label_style(TEXT)
+                .axis_desc_style(TEXT)
+                .draw()?;
+            let set = self.rows.iter().enumerate().flat_map(|(y, row)| {
+                let set = row.iter().enumerate().filter(|(_, set)| **set);
+                set.map(move |(x, _)| (x as i32, y as i32))
+            });
+            let cell = |(x, y)| Rectangle::new([(x, y), (x + 1, y + 1)], PALETTE[0].filled());
+            chart.draw_series(set.map(cell))?;
+            Ok(())
+        })
+    }
+}
+
+type Canvas<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+/// Draws on a white canvas.
+fn draw(paint: impl FnOnce(&Canvas<'_>) -> Drawn) -> Result<String> {
+    let mut svg = String::new();
+    {
+        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        let failed = |error| anyhow!("drawing a plot: {error}");
+        area.fill(&WHITE).map_err(failed)?;
+        paint(&area).map_err(failed)?;
+        area.present().map_err(failed)?;
+    }
+    Ok(svg)
+}

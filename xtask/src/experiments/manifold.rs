@@ -1,0 +1,129 @@
+//! Fig. 3: the first two principal axes of the descriptors.
+
+use anyhow::Result;
+use phalanx_hand::{Digit, Dof};
+use serde_json::json;
+
+use super::{Experiment, Figure, Finding, Table, Verdict};
+use crate::chart::{Axis, Chart, Mark, Series};
+use crate::described::Samples;
+use crate::lab::Lab;
+use crate::principal_axes::PrincipalAxes;
+
+pub(crate) const EXPERIMENT: Experiment = Experiment {
+    name: "fig-3",
+    place: "Fig. 3",
+    title: "the manifold of the descriptors",
+    claim: "on open-close, the first principal axis of the three-view descriptors follows θ_Z and \
+            the second the flexion of the fingers; with one view this cannot be seen.",
+    run,
+};
+
+/// Which of the seven angles are drawn.
+const DRAWN_DEG: [f64; 4] = [0.0, 30.0, 60.0, 90.0];
+
+fn run(lab: &Lab<'_>) -> Result<Finding> {
+    let described = lab.open_close()?;
+    let header = ["views", "axis", "variance", "|ρ| with θ_Z", "|ρ| with mean flexion"];
+    let mut table =
+        Table::new("Correlations of the principal axes with what the pose does.", header);
+    let (mut figures, mut rows, mut aligned) = (Vec::new(), Vec::new(), Vec::new());
+    for (words, views) in lab.one_and_all()? {
+        let (_, samples) = described.whole(&views, 0)?;
+        let axes = PrincipalAxes::of(samples.x.as_ref())?;
+        let (turn, flexion) = (degrees(&samples, Dof::ThetaZ), flexion(&samples));
+        let mut correlations = Vec::new();
+        for axis in 0..2 {
+            let scores = axes.scores(axis);
+            let rho = [&turn, &flexion].map(|truth| correlation(&scores, truth).abs());
+            let share = axes.shares[axis];
+            table.row([
+                words.to_owned(),
+                (axis + 1).to_string(),
+                format!("{:.0} %", 100.0 * share),
+                format!("{:.2}", rho[0]),
+                format!("{:.2}", rho[1]),
+            ]);
+            rows.push(json!({
+                "views": views.len(), "axis": axis + 1, "variance_share": share,
+                "theta_z_correlation": rho[0], "flexion_correlation": rho[1],
+            }));
+            correlations.push(rho);
+        }
+        aligned.push(correlations);
+        figures.push(Figure::chart(
+            format!("{words}: each colour is one θ_Z, each dot a pose."),
+            &scatter(&axes, &turn),
+        )?);
+    }
+    let [one, three] = [&aligned[0], &aligned[1]].map(|rho| (rho[0][0], rho[1][1]));
+    let clear = |(turn, flexion): (f64, f64)| turn > 0.7 && flexion > 0.7;
+    let claims = [clear(three), !clear(one)];
+    Ok(Finding {
+        verdict: Verdict::of(&claims),
+        sentence: format!(
+            "With three views the first axis correlates {:.2} with θ_Z and the second {:.2} with mean \
+             flexion; with one view {:.2} and {:.2}.",
+            three.0, three.1, one.0, one.1
+        ),
+        notes: Vec::new(),
+        tables: vec![table],
+        figures,
+        json: json!({ "rows": rows }),
+    })
+}
+
+/// The samples along the first two axes, in a few colours by θ_Z.
+fn scatter(axes: &PrincipalAxes, theta_z: &[f64]) -> Chart {
+    let scores = [axes.scores(0), axes.scores(1)];
+    let at = |degrees: f64| {
+        let near = |i: &usize| (theta_z[*i] - degrees).abs() < 0.5;
+        let points = (0..theta_z.len()).filter(near).map(|i| (scores[0][i], scores[1][i]));
+        Series::new(format!("{degrees}°"), Mark::Dots, points.collect())
+    };
+    Chart {
+        x: Axis::linear("first principal axis"),
+        y: Axis::linear("second principal axis"),
+        series: DRAWN_DEG.map(at).into(),
+    }
+}
+
+/// One number of every pose, degrees.
+fn degrees(samples: &Samples, dof: Dof) -> Vec<f64> {
+    samples.y.row(dof.index()).iter().map(|value| value.to_degrees()).collect()
+}
+
+/// The mean of the fingers' flexions of every pose, degrees; the thumb's apart, which bends by
+/// another plan.
+fn flexion(samples: &Samples) -> Vec<f64> {
+    let flexing: Vec<Vec<f64>> = [Digit::Index, Digit::Middle, Digit::Ring, Digit::Little]
+        .into_iter()
+        .flat_map(|digit| digit.dofs().into_iter().skip(1))
+        .map(|dof| degrees(samples, dof))
+        .collect();
+    let mean = |i| flexing.iter().map(|angles| angles[i]).sum::<f64>() / flexing.len() as f64;
+    (0..samples.y.ncols()).map(mean).collect()
+}
+
+/// Pearson's correlation.
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (mean_a, mean_b) = (mean(a), mean(b));
+    let product = |a: &[f64], b: &[f64], mean_a: f64, mean_b: f64| -> f64 {
+        a.iter().zip(b).map(|(a, b)| (a - mean_a) * (b - mean_b)).sum()
+    };
+    product(a, b, mean_a, mean_b)
+        / (product(a, a, mean_a, mean_a) * product(b, b, mean_b, mean_b)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::correlation;
+
+    #[test]
+    fn a_line_correlates_fully_and_a_bowl_not_at_all() {
+        let x = [-1.0, 0.0, 1.0];
+        assert!((correlation(&x, &[5.0, 3.0, 1.0]) + 1.0).abs() < 1e-12);
+        assert!(correlation(&x, &[1.0, 0.0, 1.0]).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,81 @@
+//! The paper's figures and claims, one experiment each, on the same small harness.
+
+mod finding;
+mod manifold;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+
+use crate::lab::Lab;
+use crate::{files, progress};
+
+pub(crate) use finding::{Figure, Finding, Table, Verdict};
+
+/// One of the paper's figures or claims, and how it is put to the test.
+pub(crate) struct Experiment {
+    /// Its command.
+    pub(crate) name: &'static str,
+    /// Where the paper has it.
+    pub(crate) place: &'static str,
+    pub(crate) title: &'static str,
+    /// What the paper shows or claims, in our words.
+    pub(crate) claim: &'static str,
+    pub(crate) run: fn(&Lab<'_>) -> Result<Finding>,
+}
+
+/// In the order of the paper.
+pub(crate) const ALL: &[Experiment] = &[manifold::EXPERIMENT];
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Which one.
+    #[arg(value_parser = PossibleValuesParser::new(ALL.iter().map(|e| e.name)))]
+    name: String,
+    /// A folder of real photographs; without it their part is left out.
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+    /// Where its JSON and its figures go.
+    #[arg(long, value_name = "DIR", default_value = "target/report")]
+    out: PathBuf,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let bar = progress::Bar::new();
+    let lab = Lab::new(arguments.data.as_deref(), &bar)?;
+    let experiment = ALL.iter().find(|experiment| experiment.name == arguments.name);
+    let experiment = experiment.expect("the parser knows the names");
+    let finding = (experiment.run)(&lab)?;
+    drop(bar);
+    write(experiment, &finding, &arguments.out)?;
+    files::print(&text(experiment, &finding))
+}
+
+/// Writes an experiment's JSON and figures under its name.
+pub(crate) fn write(experiment: &Experiment, finding: &Finding, folder: &Path) -> Result<()> {
+    let mut json = serde_json::to_vec_pretty(&finding.json)?;
+    json.push(b'\n');
+    files::write_whole(&folder.join(format!("{}.json", experiment.name)), &json)?;
+    for (k, figure) in finding.figures.iter().enumerate() {
+        let (extension, _, bytes) = figure.file();
+        let name = format!("{}-{}.{extension}", experiment.name, k + 1);
+        files::write_whole(&folder.join(name), bytes)?;
+    }
+    Ok(())
+}
+
+/// What a terminal shows.
+fn text(experiment: &Experiment, finding: &Finding) -> String {
+    let Experiment { place, title, claim, .. } = experiment;
+    let mut text = format!("# {place}: {title}\n\nThe paper: {claim}\n\n");
+    text += &format!("Verdict: {}. {}\n\n", finding.verdict.words(), finding.sentence);
+    for note in &finding.notes {
+        text += &format!("{note}\n\n");
+    }
+    for table in &finding.tables {
+        text += &format!("{}\n", table.markdown());
+    }
+    text
+}
