@@ -4,7 +4,7 @@
 //! about two thirds, the thumb's outer joints bend together, abduction narrows as the knuckle
 //! bends) and reached along a minimum-jerk path (Flash and Hogan 1985), as people's fingers do.
 
-use phalanx_hand::{Digit, Dof, Pose, abduction_limit};
+use phalanx_hand::{Digit, Dof, Pose, coupled_posture};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -124,23 +124,7 @@ impl Movement {
 
 /// A posture of one digit from the coupled prior, degrees.
 fn random_posture(digit: Digit, random: &mut Pcg64Mcg) -> Posture {
-    // The arcsine law: a digit at rest is more often nearly straight or nearly bent than halfway.
-    let mut curl = || (std::f64::consts::FRAC_PI_2 * uniform(random)).sin().powi(2);
-    let (outer, base) = (curl(), curl());
-    let spread = 2.0 * uniform(random) - 1.0;
-    let wobble = 2.0 * uniform(random) - 1.0;
-    if digit == Digit::Thumb {
-        return [
-            12.5 + 22.0 * spread,
-            -8.0 + 46.0 * base,
-            -4.0 + 54.0 * outer,
-            -8.0 + 72.0 * outer + 6.0 * wobble,
-        ];
-    }
-    let mcp = -10.0 + 95.0 * base;
-    let pip = 102.0 * outer;
-    let dip = (pip * 2.0 / 3.0 + 6.0 * wobble).clamp(0.0, 78.0);
-    [spread * 0.9 * abduction_limit(mcp.to_radians()).to_degrees(), mcp, pip, dip]
+    coupled_posture(digit, || uniform(random)).map(f64::to_degrees)
 }
 
 fn set(pose: &mut Pose, digit: Digit, joints: Posture) {

@@ -6,7 +6,9 @@ mod error;
 mod kinematics;
 mod pose;
 mod primitive;
+mod prior;
 mod shape;
+mod variation;
 
 pub use csv_file::{PoseTable, write_poses};
 pub use dof::{Digit, Dof, Unit};
@@ -14,4 +16,5 @@ pub use error::{Error, Result};
 pub use kinematics::{JOINTS, PosedHand};
 pub use pose::{Pose, abduction_limit};
 pub use primitive::{Ball, Primitive};
+pub use prior::{coupled_pose, coupled_posture, uncoupled_pose};
 pub use shape::{FingerShape, ForearmShape, HandShape, PalmShape, Side, ThumbShape};
