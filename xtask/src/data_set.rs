@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Result, bail};
-use phalanx::{OrientationRule, Progress, describe_each_pose};
+use phalanx::{NominalScenes, OrientationRule, Progress, describe_each};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, Unit};
 
@@ -59,8 +59,8 @@ impl DataSet {
         progress: &dyn Progress,
     ) -> Result<Described> {
         let (name, all) = (self.name, self.poses.len());
-        let results =
-            describe_each_pose(rig, hand, &self.poses, OrientationRule::HandAxis, progress)?;
+        let scenes = NominalScenes { rig, hand, poses: &self.poses };
+        let results = describe_each(rig, &scenes, OrientationRule::HandAxis, progress)?;
         let (mut poses, mut contexts, mut first) = (Vec::new(), Vec::new(), None);
         for (pose, result) in self.poses.into_iter().zip(results) {
             match result {

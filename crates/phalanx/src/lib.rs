@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod damage;
 mod describe;
 mod error;
 mod estimator;
@@ -7,17 +8,24 @@ mod model_file;
 mod overlay;
 mod picture;
 mod progress;
+mod random;
+mod scene;
 mod training;
 mod training_views;
 
+pub use damage::{Border, Damage, Hands};
 pub use describe::{Describer, OrientationRule, WORKING_SIZE, working_camera};
 pub use error::{Error, Result};
 pub use estimator::{Estimate, Estimator, Workspace};
 pub use overlay::{draw_overlay, working_window};
 pub use picture::{Picture, Segmenter};
 pub use progress::{Progress, Silent};
+pub use random::ItemRandom;
+pub use scene::{NominalScenes, Scene, Scenes, View};
 pub use training::{Regressor, Training, descriptors, targets};
-pub use training_views::{PoseContexts, describe_each_pose, describe_poses, draw_silhouette};
+pub use training_views::{
+    PoseContexts, SceneDescriber, describe_each, describe_poses, draw_silhouette,
+};
 
 /// The example of the repository's README, which must compile.
 #[cfg(doctest)]

@@ -8,8 +8,10 @@ use phalanx_render::Renderer;
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
+use crate::damage::make_ragged;
 use crate::{
-    Describer, Error, OrientationRule, Picture, Progress, Result, WORKING_SIZE, working_camera,
+    Describer, Error, NominalScenes, OrientationRule, Picture, Progress, Result, Scene, Scenes,
+    View, WORKING_SIZE, working_camera,
 };
 
 /// The shape contexts of one pose: for each camera, its contour points' histograms one after the
@@ -28,32 +30,28 @@ pub fn describe_poses(
     rule: OrientationRule,
     progress: &dyn Progress,
 ) -> Result<Vec<PoseContexts>> {
-    describe_each_pose(rig, hand, poses, rule, progress)?.into_iter().collect()
+    describe_each(rig, &NominalScenes { rig, hand, poses }, rule, progress)?.into_iter().collect()
 }
 
-/// [`describe_poses`], with a result for each pose.
+/// Draws scenes through every camera of a rig and describes the silhouettes, in parallel; the
+/// result has one entry per scene, in order.
 ///
 /// # Errors
-/// A camera that cannot draw at all; of each pose, that a camera cannot see or describe it.
-pub fn describe_each_pose(
+/// A camera that cannot draw at all; of each scene, that a camera cannot see or describe it.
+pub fn describe_each(
     rig: &Rig,
-    hand: &HandShape,
-    poses: &[Pose],
+    scenes: &dyn Scenes,
     rule: OrientationRule,
     progress: &dyn Progress,
 ) -> Result<Vec<Result<PoseContexts>>> {
-    let cameras = rig.cameras.iter().map(working_camera).collect::<Result<Vec<_>>>()?;
-    let views = cameras.iter().map(ViewDescriber::new).collect::<Result<Vec<_>>>()?;
-    let rest = rig.volume.rest_frame();
-    progress.begin("render and describe", poses.len());
-    let describe = |views: &mut Vec<ViewDescriber<'_>>, (pose, numbers): (usize, &Pose)| {
-        let solids = hand.pose(numbers, &rest).primitives;
-        let contexts: Result<PoseContexts> =
-            views.iter_mut().map(|view| view.contexts(&solids, rule)).collect();
+    let describer = SceneDescriber::new(rig, rule)?;
+    progress.begin("render and describe", scenes.count());
+    let describe = |describer: &mut SceneDescriber, pose: usize| {
+        let contexts = describer.contexts(&scenes.scene(pose));
         progress.step();
         contexts.map_err(|reason| Error::TrainingPose { pose, reason: Box::new(reason) })
     };
-    Ok(poses.par_iter().enumerate().map_init(|| views.clone(), describe).collect())
+    Ok((0..scenes.count()).into_par_iter().map_init(|| describer.clone(), describe).collect())
 }
 
 /// Draws a posed hand as one camera's silhouette at [`WORKING_SIZE`].
@@ -73,37 +71,68 @@ pub fn draw_silhouette(
         .map_err(|reason| Error::Render { camera: camera.name.clone(), reason })
 }
 
-/// Draws and describes in one camera's memory.
-#[derive(Clone)]
-struct ViewDescriber<'a> {
-    name: &'a str,
+/// Draws scenes and describes their silhouettes, one after another in the same memory.
+#[derive(Debug, Clone)]
+pub struct SceneDescriber {
+    rule: OrientationRule,
+    views: Vec<ViewDescriber>,
+}
+
+/// What one camera sees.
+#[derive(Debug, Clone)]
+struct ViewDescriber {
+    name: String,
     renderer: Renderer,
     drawn: GrayImage,
     describer: Describer,
     silhouette: Silhouette,
 }
 
-impl<'a> ViewDescriber<'a> {
-    fn new(camera: &'a Camera) -> Result<Self> {
+impl SceneDescriber {
+    /// For the cameras of a rig.
+    ///
+    /// # Errors
+    /// A camera that cannot draw.
+    pub fn new(rig: &Rig, rule: OrientationRule) -> Result<Self> {
+        let views = rig.cameras.iter().map(ViewDescriber::new).collect::<Result<_>>()?;
+        Ok(Self { rule, views })
+    }
+
+    /// The scene's shape contexts in every camera.
+    ///
+    /// # Errors
+    /// Another number of views than cameras, or one that cannot be seen or described.
+    pub fn contexts(&mut self, scene: &Scene) -> Result<PoseContexts> {
+        let (found, expected) = (scene.views.len(), self.views.len());
+        if found != expected {
+            return Err(Error::Mismatch { part: "views of the scene", found, expected });
+        }
+        let views = self.views.iter_mut().zip(&scene.views);
+        views.map(|(describer, view)| describer.contexts(scene, view, self.rule)).collect()
+    }
+}
+
+impl ViewDescriber {
+    fn new(camera: &Camera) -> Result<Self> {
         let name_camera = |reason| Error::Render { camera: camera.name.clone(), reason };
         Ok(Self {
-            name: &camera.name,
-            renderer: Renderer::new(camera).map_err(name_camera)?,
+            name: camera.name.clone(),
+            renderer: Renderer::new(&working_camera(camera)?).map_err(name_camera)?,
             drawn: GrayImage::new(WORKING_SIZE.0, WORKING_SIZE.1),
             describer: Describer::default(),
             silhouette: Silhouette::default(),
         })
     }
 
-    fn contexts(
-        &mut self,
-        solids: &[phalanx_hand::Primitive],
-        rule: OrientationRule,
-    ) -> Result<Vec<f32>> {
-        let camera = || self.name.to_owned();
+    fn contexts(&mut self, scene: &Scene, view: &View, rule: OrientationRule) -> Result<Vec<f32>> {
+        let camera = || self.name.clone();
+        let solids = scene.hand.pose(&scene.pose, &view.rest).primitives;
         self.renderer
-            .silhouette_into(solids, &mut self.drawn)
+            .silhouette_into(&solids, &mut self.drawn)
             .map_err(|reason| Error::Render { camera: camera(), reason })?;
+        if let Some(seed) = view.ragged {
+            make_ragged(&mut self.drawn, seed);
+        }
         self.describer
             .silhouette(Picture::Mask(&self.drawn), &mut self.silhouette)
             .map_err(|reason| Error::Silhouette { camera: camera(), reason })?;

@@ -1,0 +1,65 @@
+//! A hand before the cameras, as it is drawn and described.
+
+use glam::DAffine3;
+use phalanx_camera::Rig;
+use phalanx_hand::{HandShape, Pose};
+
+/// One sample of training or testing: whose hand, in which pose, as which cameras see it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// What an estimate should say.
+    pub pose: Pose,
+    /// Whose hand it is.
+    pub hand: HandShape,
+    /// How each camera sees it, in the order of the rig.
+    pub views: Vec<View>,
+}
+
+/// How one camera sees a scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// The hand frame at rest, to the world. A camera that stands elsewhere than its calibration
+    /// says sees just what it would see where it should stand, of a hand that is moved the other
+    /// way.
+    pub rest: DAffine3,
+    /// The seed of the silhouette's ragged border; `None` for a clean one.
+    pub ragged: Option<u64>,
+}
+
+impl Scene {
+    /// What the rig is made for: the given hand, calibrated cameras, clean silhouettes.
+    pub fn nominal(rig: &Rig, hand: &HandShape, pose: Pose) -> Self {
+        let view = View { rest: rig.volume.rest_frame(), ragged: None };
+        Self { pose, hand: hand.clone(), views: vec![view; rig.cameras.len()] }
+    }
+}
+
+/// Scenes that are made when they are drawn, so that there may be any number of them.
+pub trait Scenes: Sync {
+    /// How many there are.
+    fn count(&self) -> usize;
+
+    /// One of them, by its number; always the same.
+    fn scene(&self, number: usize) -> Scene;
+}
+
+/// Poses of one hand as the rig is made for.
+#[derive(Debug, Clone, Copy)]
+pub struct NominalScenes<'a> {
+    /// The cameras.
+    pub rig: &'a Rig,
+    /// The hand.
+    pub hand: &'a HandShape,
+    /// Its poses.
+    pub poses: &'a [Pose],
+}
+
+impl Scenes for NominalScenes<'_> {
+    fn count(&self) -> usize {
+        self.poses.len()
+    }
+
+    fn scene(&self, number: usize) -> Scene {
+        Scene::nominal(self.rig, self.hand, self.poses[number])
+    }
+}
