@@ -1,0 +1,144 @@
+//! One training set, learnt from some of the cameras with every method.
+
+use anyhow::{Context, Result};
+use faer::Mat;
+use phalanx::{
+    OrientationRule, Progress, Scenes, ViewCodebooks, describe_each, describe_with, targets,
+};
+use phalanx_multiview::Vocabulary;
+use phalanx_shape_context::BINS;
+use rayon::prelude::*;
+
+use super::method::{Method, Predictor};
+use super::sets::Set;
+use crate::described::Samples;
+use crate::table1::PaperCounts;
+
+/// Scenes, evenly spaced, whose shape contexts the codebooks are learnt from.
+const PILOT: usize = 1000;
+
+/// What has been learnt from one training set through some of the cameras.
+pub(crate) struct Learner {
+    pub(crate) train: &'static str,
+    pub(crate) train_samples: usize,
+    pub(crate) codebooks: ViewCodebooks,
+    pub(crate) predictors: Vec<(Method, Predictor)>,
+}
+
+/// Learns from a set through each choice of cameras. The pictures are drawn once.
+pub(crate) fn learn(
+    set: &Set<'_>,
+    views: &[Vec<usize>],
+    rule: OrientationRule,
+    methods: &[Method],
+    progress: &dyn Progress,
+) -> Result<Vec<Learner>> {
+    let codebooks = codebooks(set, views, rule, progress)?;
+    let samples = describe(set, rule, &codebooks, progress)?.samples;
+    progress.begin(&format!("fit {}", set.name), views.len() * methods.len());
+    let learner = |(codebooks, samples): (ViewCodebooks, Samples)| -> Result<Learner> {
+        let counts = PaperCounts::paper(codebooks.views.len(), set.name);
+        let fit = |&method: &Method| -> Result<(Method, Predictor)> {
+            let predictor = method.fit(&samples, counts);
+            progress.step();
+            Ok((method, predictor.with_context(|| method.name())?))
+        };
+        let predictors = methods.par_iter().map(fit).collect::<Result<_>>()?;
+        let train_samples = samples.x.ncols();
+        Ok(Learner { train: set.name, train_samples, codebooks, predictors })
+    };
+    codebooks.into_iter().zip(samples).map(learner).collect()
+}
+
+/// The paper's codebooks for each choice of cameras, from a part of the set.
+fn codebooks(
+    set: &Set<'_>,
+    views: &[Vec<usize>],
+    rule: OrientationRule,
+    progress: &dyn Progress,
+) -> Result<Vec<ViewCodebooks>> {
+    let pilot = EvenlySpaced::new(set, PILOT);
+    let described = describe_each(set.rig, &pilot, rule, progress)?;
+    let contexts: Vec<_> = described.into_iter().filter_map(Result::ok).collect();
+    progress.begin("cluster shape contexts", views.len());
+    let cluster = |views: &Vec<usize>| {
+        let seen: Vec<Vec<&[f32]>> = contexts
+            .iter()
+            .map(|sample| views.iter().map(|&v| sample[v].as_slice()).collect())
+            .collect();
+        let codebooks = Vocabulary::default().fit(&seen, BINS)?;
+        progress.step();
+        Ok(ViewCodebooks { views: views.clone(), codebooks })
+    };
+    views.iter().map(cluster).collect()
+}
+
+/// Some scenes of others.
+struct EvenlySpaced<'a> {
+    all: &'a Set<'a>,
+    count: usize,
+}
+
+impl<'a> EvenlySpaced<'a> {
+    fn new(all: &'a Set<'a>, most: usize) -> Self {
+        Self { all, count: all.count().min(most) }
+    }
+}
+
+impl Scenes for EvenlySpaced<'_> {
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn scene(&self, number: usize) -> phalanx::Scene {
+        self.all.scene(number * self.all.count() / self.count)
+    }
+}
+
+/// What was seen of a set.
+pub(crate) struct Seen {
+    /// The scenes that could be described.
+    pub(crate) numbers: Vec<usize>,
+    /// Their descriptors and poses, for each of the codebooks.
+    pub(crate) samples: Vec<Samples>,
+}
+
+/// Describes a whole set with each of the codebooks. Scenes that some camera does not show well
+/// enough are left out, and said so on standard error.
+///
+/// # Errors
+/// None of the scenes can be described.
+pub(crate) fn describe(
+    set: &Set<'_>,
+    rule: OrientationRule,
+    codebooks: &[ViewCodebooks],
+    progress: &dyn Progress,
+) -> Result<Seen> {
+    let all: Vec<usize> = (0..set.count()).collect();
+    progress.begin(&format!("see {}", set.name), all.len());
+    let described = describe_with(set.rig, set, &all, rule, codebooks, progress)?;
+    let (mut numbers, mut columns, mut first) = (Vec::new(), Vec::new(), None);
+    for (number, described) in all.into_iter().zip(described) {
+        match described {
+            Ok(described) => {
+                numbers.push(number);
+                columns.push(described);
+            }
+            Err(error) => first = first.or(Some(error)),
+        }
+    }
+    if let Some(error) = first {
+        if numbers.is_empty() {
+            return Err(error).context(set.name);
+        }
+        let (left_out, all) = (set.count() - numbers.len(), set.count());
+        eprintln!("{}: {left_out} of {all} are left out; the first: {error:#}", set.name);
+    }
+    let poses: Vec<_> = numbers.iter().map(|&number| set.poses[number]).collect();
+    let samples = |(k, codebooks): (usize, &ViewCodebooks)| Samples {
+        x: Mat::from_fn(codebooks.codebooks.dim(), columns.len(), |row, i| columns[i][k][row]),
+        y: targets(&poses),
+    };
+    let samples = codebooks.iter().enumerate().map(samples).collect();
+    Ok(Seen { numbers, samples })
+}

@@ -1,0 +1,95 @@
+//! The methods that the held-out table compares.
+
+use anyhow::{Context, Result};
+use clap::ValueEnum;
+use faer::{Mat, MatRef};
+use phalanx_rvm::{KernelRidge, Model, Width};
+
+use crate::described::Samples;
+use crate::metrics::mean_predictor;
+use crate::neighbours::nearest_mean;
+use crate::table1::{PaperCounts, TableMethod};
+
+/// A column's method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum Method {
+    /// The mean of the training poses.
+    Mean,
+    /// Linear bridges, features at the paper's count.
+    Lin,
+    /// Gaussian bridges, samples at the paper's count.
+    Gauss,
+    /// Both, at the paper's counts.
+    Both,
+    /// Orthogonal forward selection of as many samples as `gauss`.
+    Forward,
+    /// Gaussian kernel regression on all samples or, of many, on 2,000 of them.
+    Kernel,
+    /// The mean of the five nearest neighbours.
+    Knn5,
+}
+
+/// Something that estimates poses from descriptors.
+pub(crate) enum Predictor {
+    Model(Box<Model>),
+    Nearest(Samples),
+    Mean(Mat<f64>),
+}
+
+impl Method {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Mean => "mean",
+            Self::Lin => "lin",
+            Self::Gauss => "gauss",
+            Self::Both => "both",
+            Self::Forward => "forward",
+            Self::Kernel => "kernel",
+            Self::Knn5 => "knn5",
+        }
+    }
+
+    pub(crate) fn fit(self, samples: &Samples, counts: PaperCounts) -> Result<Predictor> {
+        let of_table = |method: TableMethod| -> Result<Predictor> {
+            let regressor = method.regressor(counts).context("it is fitted")?;
+            Ok(Predictor::Model(Box::new(regressor.fit(&samples.x, &samples.y)?.model)))
+        };
+        match self {
+            Self::Mean => Ok(Predictor::Mean(mean_predictor(&samples.y, 1))),
+            Self::Lin => of_table(TableMethod::Lin),
+            Self::Gauss => of_table(TableMethod::Gauss),
+            Self::Both => of_table(TableMethod::Both),
+            Self::Forward => of_table(TableMethod::Forward),
+            Self::Kernel => {
+                let ridge = KernelRidge { width: Width::Scatter(0.5), ..KernelRidge::default() };
+                let fit = ridge.fit(samples.x.as_ref(), samples.y.as_ref())?;
+                Ok(Predictor::Model(Box::new(fit.model)))
+            }
+            Self::Knn5 => {
+                let (x, y) = (samples.x.clone(), samples.y.clone());
+                Ok(Predictor::Nearest(Samples { x, y }))
+            }
+        }
+    }
+}
+
+impl Predictor {
+    /// Poses, 28 × T, of descriptors, K × T.
+    pub(crate) fn predict(&self, x: MatRef<'_, f64>) -> Result<Mat<f64>> {
+        Ok(match self {
+            Self::Model(model) => model.predict(x)?,
+            Self::Nearest(train) => nearest_mean(train.x.as_ref(), train.y.as_ref(), x, 5),
+            Self::Mean(mean) => Mat::from_fn(mean.nrows(), x.ncols(), |row, _| mean[(row, 0)]),
+        })
+    }
+
+    /// How many training samples it keeps; of a linear model, none.
+    pub(crate) fn kept_samples(&self) -> usize {
+        match self {
+            Self::Model(model) => model.kept_samples().len(),
+            Self::Nearest(train) => train.x.ncols(),
+            Self::Mean(_) => 0,
+        }
+    }
+}

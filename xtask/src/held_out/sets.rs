@@ -1,0 +1,214 @@
+//! What is learnt from and what is tested on.
+
+use clap::ValueEnum;
+use phalanx::{Border, Damage, Hands, ItemRandom, Scene, Scenes};
+use phalanx_camera::Rig;
+use phalanx_hand::{Dof, HandShape, Pose, coupled_pose, uncoupled_pose};
+
+use crate::trajectories::complex_take;
+
+/// Silhouettes from each camera in a test set.
+pub(crate) const TEST_SAMPLES: usize = 2000;
+/// Takes of `complex` in the test sets of motion; none is the stored one.
+const TAKES: u64 = 10;
+/// θ_Z of the training sequences, and halfway between them, degrees.
+const TRAINED_DEG: [f64; 7] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0];
+const BETWEEN_DEG: [f64; 6] = [7.5, 22.5, 37.5, 52.5, 67.5, 82.5];
+/// How far the bones and radii of other people's hands differ from the mean hand's.
+const SPREAD: f64 = 0.1;
+
+/// Seeds of everything random: poses, the angles that they are turned by, damage. No two have
+/// anything in common.
+const TRAIN_POSES: u64 = 1;
+const TRAIN_DAMAGE: u64 = 2;
+const TEST_POSES: u64 = 3;
+const TEST_ANGLES: u64 = 4;
+const TEST_DAMAGE: u64 = 5;
+
+/// Poses of a hand, seen through a rig that may be damaged.
+pub(crate) struct Set<'a> {
+    pub(crate) name: &'static str,
+    pub(crate) rig: &'a Rig,
+    pub(crate) hand: &'a HandShape,
+    pub(crate) poses: Vec<Pose>,
+    damage: Damage,
+    seed: u64,
+}
+
+impl Scenes for Set<'_> {
+    fn count(&self) -> usize {
+        self.poses.len()
+    }
+
+    fn scene(&self, number: usize) -> Scene {
+        self.damage.scene(self.rig, self.hand, self.poses[number], self.seed, number)
+    }
+}
+
+/// The cameras' tilt, 1° to 3°, in training with damage and in the test with all of it.
+fn turned(low_deg: f64, high_deg: f64) -> Damage {
+    Damage { camera_turn: low_deg.to_radians()..=high_deg.to_radians(), ..Damage::NONE }
+}
+
+/// Poses as they are, to learn from.
+pub(crate) fn clean<'a>(
+    name: &'static str,
+    rig: &'a Rig,
+    hand: &'a HandShape,
+    poses: Vec<Pose>,
+) -> Set<'a> {
+    Set { name, rig, hand, poses, damage: Damage::NONE, seed: TRAIN_DAMAGE }
+}
+
+/// Independent poses from the coupled prior to learn from, θ_Z uniform in 0° … 90°. A larger set
+/// begins with the smaller one. With `augment`, every sample has a hand of its own, cameras turned
+/// by up to 3° and ragged silhouettes.
+pub(crate) fn random<'a>(
+    rig: &'a Rig,
+    hand: &'a HandShape,
+    samples: usize,
+    augment: Augment,
+) -> Set<'a> {
+    let poses = independent(samples, TRAIN_POSES, |random| coupled_pose(|| random.uniform()));
+    let (name, damage) = match augment {
+        Augment::No => ("random", Damage::NONE),
+        Augment::Yes => (
+            "random_augmented",
+            Damage {
+                hands: Hands::Each { spread: SPREAD },
+                border: Border::Ragged,
+                ..turned(0.0, 3.0)
+            },
+        ),
+    };
+    Set { name, rig, hand, poses, damage, seed: TRAIN_DAMAGE }
+}
+
+/// Whether training samples are damaged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Augment {
+    No,
+    Yes,
+}
+
+/// What an estimator is tested on that it never saw.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum Test {
+    /// Ten other takes of `complex`, at the trained θ_Z.
+    Unseen,
+    /// The same at θ_Z halfway between the trained ones.
+    ThetaBetween,
+    /// Independent poses from the coupled prior.
+    Random,
+    /// All joints drawn independently in their ranges.
+    Uncoupled,
+    /// `unseen` with eight other hands.
+    Hands,
+    /// `unseen` with every camera turned about the hand by 1°.
+    #[value(name = "cameras_1")]
+    Cameras1,
+    /// `unseen` with every camera turned about the hand by 3°.
+    #[value(name = "cameras_3")]
+    Cameras3,
+    /// `unseen` with ragged silhouettes.
+    Ragged,
+    /// `unseen` with every image rolled by up to 30°.
+    Rolled,
+    /// Eight other hands, cameras turned by 1–3°, ragged silhouettes, θ_Z between.
+    All,
+    /// Motion from a file.
+    Poses,
+}
+
+impl Test {
+    /// The name in tables and JSON.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Unseen => "unseen",
+            Self::ThetaBetween => "theta_between",
+            Self::Random => "random",
+            Self::Uncoupled => "uncoupled",
+            Self::Hands => "hands",
+            Self::Cameras1 => "cameras_1",
+            Self::Cameras3 => "cameras_3",
+            Self::Ragged => "ragged",
+            Self::Rolled => "rolled",
+            Self::All => "all",
+            Self::Poses => "poses",
+        }
+    }
+
+    /// The test set; `motion` is that of [`Test::Poses`].
+    pub(crate) fn set<'a>(self, rig: &'a Rig, hand: &'a HandShape, motion: &[Pose]) -> Set<'a> {
+        let poses = match self {
+            Self::ThetaBetween | Self::All => takes(&BETWEEN_DEG),
+            Self::Random => {
+                independent(TEST_SAMPLES, TEST_POSES, |random| coupled_pose(|| random.uniform()))
+            }
+            Self::Uncoupled => {
+                independent(TEST_SAMPLES, TEST_POSES, |random| uncoupled_pose(|| random.uniform()))
+            }
+            Self::Poses => outside(motion),
+            _ => takes(&TRAINED_DEG),
+        };
+        Set { name: self.name(), rig, hand, poses, damage: self.damage(), seed: TEST_DAMAGE }
+    }
+
+    fn damage(self) -> Damage {
+        let hands = Hands::Several { count: 8, spread: SPREAD };
+        match self {
+            Self::Hands => Damage { hands, ..Damage::NONE },
+            Self::Cameras1 => turned(1.0, 1.0),
+            Self::Cameras3 => turned(3.0, 3.0),
+            Self::Ragged => Damage { border: Border::Ragged, ..Damage::NONE },
+            Self::Rolled => Damage { camera_roll: 30_f64.to_radians(), ..Damage::NONE },
+            Self::All => Damage { hands, border: Border::Ragged, ..turned(1.0, 3.0) },
+            Self::Unseen | Self::ThetaBetween | Self::Random | Self::Uncoupled | Self::Poses => {
+                Damage::NONE
+            }
+        }
+    }
+}
+
+/// Frames of the unseen takes, evenly spaced, each at one of some angles.
+fn takes(theta_z_deg: &[f64]) -> Vec<Pose> {
+    let frames: Vec<Pose> = (1..=TAKES).flat_map(complex_take).collect();
+    turned_at_random(&frames, theta_z_deg)
+}
+
+/// Frames of outside motion, evenly spaced. Where they do not turn about the forearm, each is at
+/// one of the trained angles.
+fn outside(motion: &[Pose]) -> Vec<Pose> {
+    if motion.iter().any(|pose| pose[Dof::ThetaZ] != motion[0][Dof::ThetaZ]) {
+        return evenly_spaced(motion);
+    }
+    turned_at_random(motion, &TRAINED_DEG)
+}
+
+fn turned_at_random(frames: &[Pose], theta_z_deg: &[f64]) -> Vec<Pose> {
+    let turned = |(i, mut pose): (usize, Pose)| {
+        let angle = ItemRandom::new(TEST_ANGLES, i as u64).below(theta_z_deg.len());
+        pose[Dof::ThetaZ] = theta_z_deg[angle].to_radians();
+        pose
+    };
+    evenly_spaced(frames).into_iter().enumerate().map(turned).collect()
+}
+
+/// As many frames as a test set has; a shorter motion is gone through several times.
+fn evenly_spaced(frames: &[Pose]) -> Vec<Pose> {
+    let rounds = TEST_SAMPLES.div_ceil(frames.len());
+    let step = |i: usize| i * rounds * frames.len() / TEST_SAMPLES % frames.len();
+    (0..TEST_SAMPLES).map(|i| frames[step(i)]).collect()
+}
+
+/// Independent poses, θ_Z uniform in 0° … 90°.
+fn independent(samples: usize, seed: u64, pose: impl Fn(&mut ItemRandom) -> Pose) -> Vec<Pose> {
+    let draw = |i: usize| {
+        let mut random = ItemRandom::new(seed, i as u64);
+        let mut pose = pose(&mut random);
+        pose[Dof::ThetaZ] = random.between(0.0, std::f64::consts::FRAC_PI_2);
+        pose
+    };
+    (0..samples).map(draw).collect()
+}
