@@ -2,9 +2,12 @@
 
 use faer::{Mat, MatRef};
 
+use crate::design::Design;
+use crate::equations::Equations;
 use crate::penalised::Penalised;
-use crate::problem::{Design, Problem};
-use crate::{Error, Fit, Kernel, Report, Result, Trace, Width, check, linalg};
+use crate::problem::Problem;
+use crate::sums::{Summed, Sums};
+use crate::{Columns, Error, Fit, Kernel, Report, Result, Trace, Width, check, linalg};
 
 /// Largest share of the columns that a step towards a count removes.
 const PRUNED_AT_ONCE: f64 = 0.15;
@@ -74,17 +77,26 @@ impl Bridges {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
         let problem = Problem::new(x, y)?;
-        let design = Design::full(&problem, self.kernel)?;
-        let selected = self.select(&design)?;
-        let model = selected.solved.model(&design, &selected.kept);
+        self.solve(&Design::full(&problem, self.kernel)?)
+    }
+
+    /// Fits sums over columns of the same kernel.
+    pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
+        columns.check_kernel(self.kernel)?;
+        self.solve(&Summed::new(columns, sums)?)
+    }
+
+    pub(crate) fn solve(&self, equations: &dyn Equations) -> Result<Fit> {
+        let selected = self.select(equations)?;
+        let model = selected.solved.model(equations, &selected.kept);
         Ok(Fit { model, report: Report::new(vec![selected.trace], Some(selected.nu)) })
     }
 
-    /// Runs the bridges over the columns of a design. Halving ν only after the descent would keep
+    /// Runs the bridges over all columns. Halving ν only after the descent would keep
     /// columns that too strong a prior chose.
-    pub(crate) fn select(&self, design: &Design<'_>) -> Result<Selection> {
-        self.check(design.size())?;
-        let start = Bridge::start(design, self.lambda)?;
+    fn select(&self, equations: &dyn Equations) -> Result<Selection> {
+        self.check(equations.columns().size())?;
+        let start = Bridge::start(equations, self.lambda)?;
         let mut nu = self.nu;
         let mut selection = self.descend(start.clone(), nu)?;
         let is_count = matches!(self.stop, Stop::Count(_));
@@ -139,12 +151,12 @@ impl Bridges {
 }
 
 /// The columns that the bridges kept, and their weights.
-pub(crate) struct Selection {
-    pub(crate) kept: Vec<usize>,
-    pub(crate) solved: Penalised,
+struct Selection {
+    kept: Vec<usize>,
+    solved: Penalised,
     /// ν/m as it ended.
-    pub(crate) nu: f64,
-    pub(crate) trace: Trace,
+    nu: f64,
+    trace: Trace,
 }
 
 /// The iteration's state, over the columns kept so far.
@@ -162,14 +174,14 @@ struct Bridge {
 
 impl Bridge {
     /// All columns, with the weights of ridge regression; ν is still to be set.
-    fn start(design: &Design<'_>, lambda: f64) -> Result<Self> {
-        let (gram, correlations) = (design.gram(), design.correlations());
+    fn start(equations: &dyn Equations, lambda: f64) -> Result<Self> {
+        let (gram, correlations) = (equations.gram(), equations.correlations());
         Ok(Self {
-            kept: (0..design.size()).collect(),
-            weights: ridge(gram.as_ref(), correlations.as_ref(), lambda)?,
+            kept: (0..gram.ncols()).collect(),
+            weights: Penalised::ridge(gram.as_ref(), correlations.as_ref(), lambda)?.weights,
             gram,
             correlations,
-            energy: linalg::inner(design.targets(), design.targets()),
+            energy: equations.energy(),
             nu: 0.0,
         })
     }
@@ -228,10 +240,4 @@ impl Bridge {
         let norms = linalg::row_norms(self.weights.as_ref());
         norms.iter().enumerate().all(|(k, norm)| self.gram[(k, k)] * norm * norm > 0.5 * self.nu)
     }
-}
-
-/// Ridge weights, p×m.
-fn ridge(gram: MatRef<'_, f64>, correlations: MatRef<'_, f64>, lambda: f64) -> Result<Mat<f64>> {
-    let scales = vec![lambda.sqrt().recip(); gram.ncols()];
-    Ok(Penalised::solve(gram, correlations, scales)?.weights)
 }

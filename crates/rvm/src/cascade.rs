@@ -3,8 +3,11 @@
 use faer::MatRef;
 
 use crate::bridges::{Bridges, Stop};
-use crate::problem::{Design, Problem};
-use crate::{Fit, Kernel, Report, Result, Width};
+use crate::design::Design;
+use crate::equations::Equations;
+use crate::problem::Problem;
+use crate::sums::{Summed, Sums};
+use crate::{Columns, Error, Fit, Kernel, Report, Result, Width};
 
 /// The paper's "both" (de Campos and Murray 2006, section 4): bridges over linear columns select
 /// features, then bridges over Gaussian columns on those features select samples.
@@ -38,21 +41,47 @@ impl Default for Cascade {
 impl Cascade {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
-        let bridges = |kernel, stop| Bridges { kernel, stop, nu: self.nu, ..Bridges::default() };
-        let gaussian = Kernel::Gaussian(self.width);
-        gaussian.check()?;
+        self.width.check()?;
         let problem = Problem::new(x, y)?;
-        let linear = Design::full(&problem, Kernel::Linear)?;
-        let first = bridges(Kernel::Linear, self.features).select(&linear)?;
-        let features: Vec<usize> = first.kept.iter().map(|&k| linear.features()[k]).collect();
-        if features.is_empty() {
-            let model = first.solved.model(&linear, &first.kept);
-            return Ok(Fit { model, report: Report::new(vec![first.trace], Some(first.nu)) });
+        let first = self.first(&Design::full(&problem, Kernel::Linear)?)?;
+        let features = first.model.selected_features().to_vec();
+        self.second(first, &Design::new(&problem, features, Kernel::Gaussian(self.width))?)
+    }
+
+    /// The first of two passes over a stream: the fit over linear columns, whose
+    /// [`selected_features`](crate::Model::selected_features) the second pass reads. If there are
+    /// none, it is the cascade's fit already.
+    pub fn fit_features(&self, linear: &Columns, sums: &Sums) -> Result<Fit> {
+        linear.check_kernel(Kernel::Linear)?;
+        self.first(&Summed::new(linear, sums)?)
+    }
+
+    /// The second pass: the fit over Gaussian columns on the features that the `first` selected
+    /// ([`Columns::over`]).
+    pub fn fit_samples(&self, first: Fit, gaussian: &Columns, sums: &Sums) -> Result<Fit> {
+        gaussian.check_kernel(Kernel::Gaussian(self.width))?;
+        let selected = first.model.selected_features();
+        if let Some(&feature) = gaussian.features().iter().find(|f| !selected.contains(f)) {
+            return Err(Error::NotSelected { feature });
         }
-        let design = Design::new(&problem, features, gaussian)?;
-        let second = bridges(gaussian, self.samples).select(&design)?;
-        let model = second.solved.model(&design, &second.kept);
-        let traces = vec![first.trace, second.trace];
-        Ok(Fit { model, report: Report::new(traces, Some(second.nu)) })
+        self.second(first, &Summed::new(gaussian, sums)?)
+    }
+
+    fn first(&self, linear: &dyn Equations) -> Result<Fit> {
+        self.bridges(Kernel::Linear, self.features).solve(linear)
+    }
+
+    fn second(&self, first: Fit, gaussian: &dyn Equations) -> Result<Fit> {
+        if first.model.selected_features().is_empty() {
+            return Ok(first);
+        }
+        let bridges = self.bridges(Kernel::Gaussian(self.width), self.samples);
+        let Fit { model, report } = bridges.solve(gaussian)?;
+        let traces = [first.report.traces, report.traces].concat();
+        Ok(Fit { model, report: Report::new(traces, report.penalty) })
+    }
+
+    fn bridges(&self, kernel: Kernel, stop: Stop) -> Bridges {
+        Bridges { kernel, stop, nu: self.nu, ..Bridges::default() }
     }
 }

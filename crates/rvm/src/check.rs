@@ -55,3 +55,22 @@ pub(crate) fn iterations(max_iterations: usize) -> Result<()> {
 pub(crate) fn count(asked: usize, available: usize) -> Result<()> {
     if (1..=available).contains(&asked) { Ok(()) } else { Err(Error::Count { asked, available }) }
 }
+
+/// Refuses indices of inputs that are not ascending or not there.
+pub(crate) fn features(features: &[usize], inputs: usize) -> Result<()> {
+    let ascends = |place: usize| place == 0 || features[place - 1] < features[place];
+    for (place, &feature) in features.iter().enumerate() {
+        if feature >= inputs || !ascends(place) {
+            return Err(Error::Feature { feature, inputs });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses an empty grid of penalties, and any that is not positive and finite.
+pub(crate) fn grid(grid: &[f64]) -> Result<()> {
+    if grid.is_empty() {
+        return Err(Error::Empty { what: "grid of lambda", rows: 1, columns: 0 });
+    }
+    grid.iter().try_for_each(|&lambda| positive("lambda", lambda))
+}

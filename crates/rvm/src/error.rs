@@ -1,5 +1,7 @@
 //! What can go wrong, by name.
 
+use crate::Kernel;
+
 /// Result of this crate's fallible calls.
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -64,6 +66,67 @@ pub enum Error {
         columns: usize,
         /// Most that are accepted.
         limit: usize,
+    },
+    /// Indices of inputs must be ascending and name inputs that there are.
+    #[error("feature {feature} does not ascend or is not one of {inputs} inputs")]
+    Feature {
+        /// The first index at fault.
+        feature: usize,
+        /// Inputs there are.
+        inputs: usize,
+    },
+    /// A streamed value lies absurdly far from where the pilot's samples do.
+    #[error(
+        "{what}[{row}, {column}] is {value}, more than 65536 of the pilot's standard deviations \
+         from its mean"
+    )]
+    FarFromPilot {
+        /// Which matrix.
+        what: &'static str,
+        /// Row of the entry.
+        row: usize,
+        /// Column (sample) of the entry.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// Sums over so many samples could overflow.
+    #[error("{samples} samples in one sum; it takes at most {limit}")]
+    TooManySamples {
+        /// Samples that there would be.
+        samples: usize,
+        /// Most that are accepted.
+        limit: usize,
+    },
+    /// Sums were given columns, or other sums, that they do not belong to.
+    #[error("sums over columns {sums:016x} do not belong to columns {columns:016x}")]
+    OtherColumns {
+        /// Fingerprint of the columns that were summed.
+        sums: u64,
+        /// Fingerprint of the columns given.
+        columns: u64,
+    },
+    /// Columns were made for another kernel than the fitter's.
+    #[error("the fitter's kernel is {fitter:?}, the columns' {columns:?}")]
+    OtherKernel {
+        /// Kernel of the fitter.
+        fitter: Kernel,
+        /// Kernel of the columns.
+        columns: Kernel,
+    },
+    /// The columns of a cascade's second pass read a feature that its first did not select.
+    #[error("the columns read feature {feature}, which the first pass did not select")]
+    NotSelected {
+        /// The first such feature.
+        feature: usize,
+    },
+    /// The parts of sums do not fit together.
+    #[error("parts of sums: {field} {problem}")]
+    SumsParts {
+        /// The field at fault.
+        field: &'static str,
+        /// What is wrong with it.
+        problem: &'static str,
     },
     /// A system is singular to working precision: a larger penalty is needed.
     #[error("the {size}×{size} system is singular to working precision; use a larger lambda")]

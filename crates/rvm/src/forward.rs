@@ -2,9 +2,12 @@
 
 use faer::{Mat, MatRef};
 
+use crate::design::Design;
+use crate::equations::Equations;
 use crate::penalised::Penalised;
-use crate::problem::{Design, Problem};
-use crate::{Fit, Kernel, Report, Result, Trace, Width, check, linalg};
+use crate::problem::Problem;
+use crate::sums::{Summed, Sums};
+use crate::{Columns, Fit, Kernel, Report, Result, Trace, Width, check, linalg};
 
 /// A column with less than this share of its energy outside the columns chosen depends on them.
 const DEPENDENT: f64 = 1e-10;
@@ -41,44 +44,55 @@ impl Default for ForwardSelection {
 impl ForwardSelection {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
-        check::positive("lambda", self.lambda)?;
         let problem = Problem::new(x, y)?;
-        let design = Design::full(&problem, self.kernel)?;
-        check::count(self.count, design.size())?;
-        let mut products = Products::new(&design);
-        let mut search = Search::new(&design, self.lambda);
+        self.solve(&Design::full(&problem, self.kernel)?)
+    }
+
+    /// Fits sums over columns of the same kernel.
+    pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
+        columns.check_kernel(self.kernel)?;
+        self.solve(&Summed::new(columns, sums)?)
+    }
+
+    fn solve(&self, equations: &dyn Equations) -> Result<Fit> {
+        check::positive("lambda", self.lambda)?;
+        check::count(self.count, equations.columns().size())?;
+        let correlations = equations.correlations();
+        let start = Search::new(equations, correlations.as_ref(), self.lambda);
+        let mut products = Products::new(equations);
+        let (mut kept, mut objective) = self.grow(start.clone(), &mut products);
+        self.replace(&start, &mut kept, &mut products, &mut objective);
+        kept.sort_unstable();
+        let gram = products.between(&kept);
+        let correlations = linalg::subrows(correlations.as_ref(), &kept);
+        let solved = Penalised::ridge(gram.as_ref(), correlations.as_ref(), self.lambda)?;
+        let trace = Trace { converged: kept.len() == self.count, objective };
+        let model = solved.model(equations, &kept);
+        Ok(Fit { model, report: Report::new(vec![trace], None) })
+    }
+
+    /// Adds one column after another; returns them and the error after each.
+    fn grow(&self, mut search: Search, products: &mut Products<'_>) -> (Vec<usize>, Vec<f64>) {
         let enough = DEPENDENT * search.error;
         let mut objective = Vec::with_capacity(self.count);
         while search.chosen.len() < self.count
             && let Some((best, gain)) = search.best()
             && gain > enough
         {
-            search.add(best, &mut products);
+            search.add(best, products);
             objective.push(search.error);
         }
-        let mut kept = search.chosen;
-        self.replace(&design, &mut kept, &mut products, &mut objective);
-        kept.sort_unstable();
-        let columns =
-            Mat::from_fn(design.columns.nrows(), kept.len(), |i, k| design.columns[(i, kept[k])]);
-        let gram = linalg::gram(columns.as_ref());
-        let correlations = linalg::product(columns.transpose(), design.targets());
-        let scales = vec![self.lambda.sqrt().recip(); kept.len()];
-        let solved = Penalised::solve(gram.as_ref(), correlations.as_ref(), scales)?;
-        let trace = Trace { converged: kept.len() == self.count, objective };
-        let model = solved.model(&design, &kept);
-        Ok(Fit { model, report: Report::new(vec![trace], None) })
+        (search.chosen, objective)
     }
 
     /// Sweeps over the columns chosen until none is replaced.
     fn replace(
         &self,
-        design: &Design<'_>,
+        start: &Search,
         chosen: &mut [usize],
         products: &mut Products<'_>,
         objective: &mut Vec<f64>,
     ) {
-        let start = Search::new(design, self.lambda);
         for _ in 0..self.sweeps {
             let (mut replaced, mut error) = (false, f64::INFINITY);
             for place in 0..chosen.len() {
@@ -104,21 +118,29 @@ impl ForwardSelection {
 /// Columns of G = FFᵀ without λ, each computed when it is first asked for: only those of columns
 /// that are chosen at some time ever are.
 struct Products<'a> {
-    columns: MatRef<'a, f64>,
+    equations: &'a dyn Equations,
     known: Vec<Option<Vec<f64>>>,
 }
 
 impl<'a> Products<'a> {
-    fn new(design: &'a Design<'_>) -> Self {
-        let columns = design.columns.as_ref();
-        Self { columns, known: vec![None; columns.ncols()] }
+    fn new(equations: &'a dyn Equations) -> Self {
+        Self { equations, known: vec![None; equations.columns().size()] }
     }
 
     fn with(&mut self, column: usize) -> &[f64] {
-        self.known[column].get_or_insert_with(|| {
-            let one = self.columns.subcols(column, 1);
-            linalg::product(self.columns.transpose(), one).col_as_slice(0).to_vec()
-        })
+        self.known[column].get_or_insert_with(|| self.equations.gram_column(column))
+    }
+
+    /// The square submatrix on `kept`.
+    fn between(&mut self, kept: &[usize]) -> Mat<f64> {
+        let mut out = Mat::zeros(kept.len(), kept.len());
+        for (j, &column) in kept.iter().enumerate() {
+            let products = self.with(column);
+            for (i, &row) in kept.iter().enumerate() {
+                out[(i, j)] = products[row];
+            }
+        }
+        out
     }
 }
 
@@ -139,16 +161,15 @@ struct Search {
 }
 
 impl Search {
-    fn new(design: &Design<'_>, lambda: f64) -> Self {
-        let columns = design.columns.as_ref();
-        let total: Vec<f64> = columns.col_iter().map(|c| c.squared_norm_l2() + lambda).collect();
+    fn new(equations: &dyn Equations, correlations: MatRef<'_, f64>, lambda: f64) -> Self {
+        let total: Vec<f64> = equations.gram_diagonal().iter().map(|g| g + lambda).collect();
         Self {
             chosen: Vec::new(),
-            error: linalg::inner(design.targets(), design.targets()),
+            error: equations.energy(),
             factor: Vec::new(),
             outside: total.clone(),
             total,
-            correlations: linalg::product(design.targets().transpose(), columns),
+            correlations: correlations.transpose().to_owned(),
         }
     }
 

@@ -3,10 +3,11 @@
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
+use crate::design::Design;
 use crate::model::{Factor, Posterior};
 use crate::penalised::Penalised;
-use crate::problem::{Design, Problem};
-use crate::{Error, Fit, Kernel, Report, Result, Trace, Width, check, linalg};
+use crate::problem::Problem;
+use crate::{Error, Fit, Kernel, Report, Result, Trace, Width, check, equations, linalg};
 
 /// How strongly kernel ridge regression is penalised.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,7 +70,8 @@ impl KernelRidge {
         let kept: Vec<usize> = (0..n).collect();
         let factor = Factor::pack(kept.clone(), dual.factor.as_ref());
         let posterior = Posterior::Process { factor, lambda };
-        let model = design.model(&kept, dual.weights.as_ref(), &dual.noise(), posterior);
+        let weights = dual.weights.as_ref();
+        let model = equations::model(&design, &kept, weights, &dual.noise(), posterior);
         let trace = Trace { converged: true, objective: errors };
         Ok(Fit { model, report: Report::new(vec![trace], Some(lambda)) })
     }
@@ -79,10 +81,7 @@ impl KernelRidge {
             Lambda::Given(lambda) => std::slice::from_ref(lambda),
             Lambda::LeaveOneOut(grid) => grid,
         };
-        if grid.is_empty() {
-            return Err(Error::Empty { what: "grid of lambda", rows: 1, columns: 0 });
-        }
-        grid.iter().try_for_each(|&lambda| check::positive("lambda", lambda))?;
+        check::grid(grid)?;
         Ok(grid)
     }
 }
@@ -100,7 +99,7 @@ fn mean(design: &Design<'_>, lambda: f64) -> Result<Fit> {
 
 /// K̃ = H K H: the columns come centred, now the rows too.
 fn doubly_centred(design: &Design<'_>) -> Mat<f64> {
-    let mut k = design.columns.clone();
+    let mut k = design.phi.clone();
     let n = k.ncols();
     let mut means = vec![0.0; n];
     for j in 0..n {

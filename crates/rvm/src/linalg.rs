@@ -66,10 +66,24 @@ pub(crate) fn lower_inverse(l: MatRef<'_, f64>) -> Mat<f64> {
     out
 }
 
+/// Solves L X = B in place of B, for a lower triangular L.
+pub(crate) fn lower_solve(l: MatRef<'_, f64>, b: &mut Mat<f64>) {
+    b.as_mut().par_col_chunks_mut(BLOCK).for_each(|columns| {
+        solve_lower_triangular_in_place(l, columns, Par::Seq);
+    });
+}
+
+/// Solves U X = B in place of B, for an upper triangular U.
+pub(crate) fn upper_solve(u: MatRef<'_, f64>, b: &mut Mat<f64>) {
+    b.as_mut().par_col_chunks_mut(BLOCK).for_each(|columns| {
+        solve_upper_triangular_in_place(u, columns, Par::Seq);
+    });
+}
+
 /// Solves L Lᵀ X = B in place of B.
 pub(crate) fn cholesky_solve(l: MatRef<'_, f64>, b: &mut Mat<f64>) {
-    solve_lower_triangular_in_place(l, b.as_mut(), Par::Seq);
-    solve_upper_triangular_in_place(l.transpose(), b.as_mut(), Par::Seq);
+    lower_solve(l, b);
+    upper_solve(l.transpose(), b);
 }
 
 /// The square submatrix on `kept`.

@@ -2,8 +2,8 @@
 
 use faer::{Mat, MatRef};
 
+use crate::equations::{self, Equations};
 use crate::model::{Factor, Posterior};
-use crate::problem::Design;
 use crate::{Error, Model, Result, linalg};
 
 /// The minimiser of ‖Y − ΦW‖² + Σₖ ‖wₖ‖²/dₖ².
@@ -20,6 +20,15 @@ pub(crate) struct Penalised {
 }
 
 impl Penalised {
+    /// Ridge regression: every column's penalty is λ.
+    pub(crate) fn ridge(
+        gram: MatRef<'_, f64>,
+        correlations: MatRef<'_, f64>,
+        lambda: f64,
+    ) -> Result<Self> {
+        Self::solve(gram, correlations, vec![lambda.sqrt().recip(); gram.ncols()])
+    }
+
     /// From G (p×p), B (p×m) and the scales d (p).
     pub(crate) fn solve(
         gram: MatRef<'_, f64>,
@@ -41,28 +50,39 @@ impl Penalised {
         Ok(Self { weights, cholesky, scales })
     }
 
-    /// The model on the columns `kept` of `design`, with each target's noise estimated from its
-    /// residuals over the degrees of freedom that the penalised fit and the bias leave.
-    pub(crate) fn model(&self, design: &Design<'_>, kept: &[usize]) -> Model {
-        let columns =
-            Mat::from_fn(design.columns.nrows(), kept.len(), |i, k| design.columns[(i, kept[k])]);
-        let fitted = linalg::product(columns.as_ref(), self.weights.as_ref());
-        let residuals = design.targets() - &fitted;
-        // With M = C⁻¹D the weights' covariance relative to the noise is Σ = MᵀM, and the fit uses
-        // tr(G Σ) = p − ‖C⁻¹‖² degrees of freedom.
+    /// M with Σ = MᵀM, the weights' covariance relative to the noise, and the degrees of freedom
+    /// tr(G Σ) that the fit uses.
+    pub(crate) fn posterior(&self) -> (Mat<f64>, f64) {
+        // M = C⁻¹D, and tr(G Σ) = p − ‖C⁻¹‖².
         let mut factor = linalg::lower_inverse(self.cholesky.as_ref());
-        let used = kept.len() as f64 - linalg::inner(factor.as_ref(), factor.as_ref());
+        let used = factor.ncols() as f64 - linalg::inner(factor.as_ref(), factor.as_ref());
         for (j, d) in self.scales.iter().enumerate() {
             factor.col_as_slice_mut(j).iter_mut().for_each(|v| *v *= d);
         }
-        let left = (residuals.nrows() as f64 - 1.0 - used).max(1.0);
-        let noise: Vec<f64> = (0..residuals.ncols())
-            .map(|j| (residuals.col(j).iter().map(|r| r * r).sum::<f64>() / left).sqrt())
-            .collect();
-        let posterior =
-            Posterior::Weights(vec![Factor::pack((0..kept.len()).collect(), factor.as_ref())]);
-        design.model(kept, self.weights.as_ref(), &noise, posterior)
+        (factor, used)
     }
+
+    /// The model on the columns `kept` of `equations`, which these weights belong to.
+    pub(crate) fn model(&self, equations: &dyn Equations, kept: &[usize]) -> Model {
+        let (factor, used) = self.posterior();
+        let weights = self.weights.as_ref();
+        let noise = noise(equations, kept, weights, used);
+        let factor = Factor::pack((0..kept.len()).collect(), factor.as_ref());
+        equations::model(equations, kept, weights, &noise, Posterior::Weights(vec![factor]))
+    }
+}
+
+/// Each target's noise deviation: its residuals over the degrees of freedom that the penalised
+/// fit, which uses `used`, and the bias leave.
+pub(crate) fn noise(
+    equations: &dyn Equations,
+    kept: &[usize],
+    weights: MatRef<'_, f64>,
+    used: f64,
+) -> Vec<f64> {
+    let left = (equations.samples() as f64 - 1.0 - used).max(1.0);
+    let residuals = equations.residuals(kept, weights);
+    residuals.into_iter().map(|squared| (squared / left).sqrt()).collect()
 }
 
 impl Factor {

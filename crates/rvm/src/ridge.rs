@@ -2,9 +2,12 @@
 
 use faer::MatRef;
 
+use crate::design::Design;
+use crate::equations::Equations;
 use crate::penalised::Penalised;
-use crate::problem::{Design, Problem};
-use crate::{Fit, Kernel, Report, Result, Trace, check, linalg};
+use crate::problem::Problem;
+use crate::sums::{Summed, Sums};
+use crate::{Columns, Fit, Kernel, Report, Result, Trace, check, linalg};
 
 /// Ridge regression: minimises ‖Y − AF‖² + λ‖A‖² on standardised data.
 ///
@@ -33,16 +36,23 @@ impl Ridge {
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
         check::positive("lambda", self.lambda)?;
         let problem = Problem::new(x, y)?;
-        let design = Design::full(&problem, self.kernel)?;
-        let p = design.size();
-        let scales = vec![self.lambda.sqrt().recip(); p];
-        let correlations = design.correlations();
-        let solved = Penalised::solve(design.gram().as_ref(), correlations.as_ref(), scales)?;
-        let targets = design.targets();
+        self.solve(&Design::full(&problem, self.kernel)?)
+    }
+
+    /// Fits sums over columns of the same kernel.
+    pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
+        columns.check_kernel(self.kernel)?;
+        self.solve(&Summed::new(columns, sums)?)
+    }
+
+    fn solve(&self, equations: &dyn Equations) -> Result<Fit> {
+        check::positive("lambda", self.lambda)?;
+        let (gram, correlations) = (equations.gram(), equations.correlations());
+        let solved = Penalised::ridge(gram.as_ref(), correlations.as_ref(), self.lambda)?;
         // At the minimum the objective is ‖Y‖² − tr(WᵀB).
-        let objective = linalg::inner(targets, targets)
-            - linalg::inner(solved.weights.as_ref(), correlations.as_ref());
-        let model = solved.model(&design, &(0..p).collect::<Vec<_>>());
+        let objective =
+            equations.energy() - linalg::inner(solved.weights.as_ref(), correlations.as_ref());
+        let model = solved.model(equations, &(0..gram.ncols()).collect::<Vec<_>>());
         let trace = Trace { converged: true, objective: vec![objective] };
         Ok(Fit { model, report: Report::new(vec![trace], None) })
     }

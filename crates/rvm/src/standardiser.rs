@@ -69,6 +69,12 @@ impl Standardiser {
         Ok(Mat::from_fn(z.nrows(), z.ncols(), |i, j| self.mean[i] + self.scale[i] * z[(i, j)]))
     }
 
+    /// How many standard deviations a value of row `i` lies from its mean; for a row that does not
+    /// vary, how many of the least that would count as varying.
+    pub(crate) fn deviations(&self, i: usize, value: f64) -> f64 {
+        (value - self.mean[i]).abs() / self.scale[i].max(floor(self.mean[i].abs()))
+    }
+
     /// One value of row `i`, scaled.
     pub(crate) fn scaled(&self, i: usize, value: f64) -> f64 {
         if self.scale[i] > 0.0 { (value - self.mean[i]) / self.scale[i] } else { 0.0 }
@@ -86,6 +92,10 @@ fn moments(x: MatRef<'_, f64>, i: usize) -> (f64, f64) {
     let mean = row.iter().sum::<f64>() / n;
     let scale = (row.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt();
     let largest = row.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let floor = (RELATIVE_FLOOR * largest).max(ABSOLUTE_FLOOR);
-    (mean, if scale > floor { scale } else { 0.0 })
+    (mean, if scale > floor(largest) { scale } else { 0.0 })
+}
+
+/// Most standard deviation of a row that does not vary, from its largest magnitude.
+fn floor(largest: f64) -> f64 {
+    (RELATIVE_FLOOR * largest).max(ABSOLUTE_FLOOR)
 }

@@ -5,8 +5,10 @@ mod evidence;
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
+use crate::design::Design;
+use crate::equations::{self, Equations};
 use crate::model::{Factor, Posterior};
-use crate::problem::{Design, Problem};
+use crate::problem::Problem;
 use crate::{Error, Fit, Kernel, Model, Report, Result, Trace, Width, check};
 use evidence::{Evidence, Target};
 
@@ -157,5 +159,5 @@ fn join(design: &Design<'_>, rows: Vec<Row>) -> Model {
         factors.push(row.factor);
         noise.push(row.noise);
     }
-    design.model(&kept, weights.as_ref(), &noise, Posterior::Weights(factors))
+    equations::model(design, &kept, weights.as_ref(), &noise, Posterior::Weights(factors))
 }

@@ -5,6 +5,8 @@ mod bridges;
 mod equivariance;
 mod forward;
 mod kernel_ridge;
+mod nystrom;
 mod parts;
 mod problems;
+mod streams;
 mod tipping;

@@ -1,0 +1,166 @@
+//! Kernel ridge regression on a few of the samples' Gaussians.
+
+use faer::{Mat, MatRef};
+
+use crate::equations::{self, Equations};
+use crate::model::{Factor, Posterior};
+use crate::penalised::{self, Penalised};
+use crate::problem::Problem;
+use crate::sums::{Summed, Sums};
+use crate::{Columns, Error, Fit, Kernel, Report, Result, Trace, Width, check, linalg};
+
+/// Added to the kernel's diagonal of ones, so that directions in which the centres' Gaussians
+/// depend on each other to working precision are not blown up.
+const JITTER: f64 = 1e-8;
+/// Samples that `fit` adds at a time.
+const BATCH: usize = 4096;
+
+/// How strongly a Nyström regression is penalised.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Penalty {
+    /// This λ > 0.
+    Given(f64),
+    /// Of these λ > 0, the one with the least generalised cross-validation error (Golub, Heath
+    /// and Wahba 1979): the leave-one-out error with every sample's leverage taken for the mean,
+    /// which needs no more than the sums.
+    CrossValidated(Vec<f64>),
+}
+
+/// Kernel ridge regression with Gaussians on p of the samples and an unpenalised bias, fitted to
+/// all of them: the "subset of regressors" (Rasmussen and Williams 2006, section 8.3.1; Nyström's
+/// approximation).
+///
+/// It minimises ‖Y − WΦ‖² + λ tr(W K Wᵀ), with K the kernel between the centres, so λ means what
+/// it means to [`KernelRidge`](crate::KernelRidge), and with all samples as centres the two agree.
+/// It is solved for V = W L, where L Lᵀ = K + 10⁻⁸ I. The trace holds the mean squared
+/// generalised cross-validation error of each λ of the grid, in standardised units (infinite where
+/// a λ is too small to be solved for); the report's penalty is the λ taken.
+///
+/// Far from the centres the standard deviation shrinks towards the noise's, as for the other
+/// models with weights.
+///
+/// Time grows with n·p² for the sums and p³ for each λ; memory with p².
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Nystrom {
+    /// Width of the kernel.
+    pub width: Width,
+    /// Penalty. In a Gaussian process λ is the noise's variance over the signal's, whatever the
+    /// number of samples: the default grid goes from next to no noise (10⁻⁴) to hardly any signal
+    /// (10).
+    pub penalty: Penalty,
+}
+
+impl Default for Nystrom {
+    fn default() -> Self {
+        let grid = (-4..=1).map(|e| 10_f64.powi(e)).collect();
+        Self { width: Width::Scatter(1.0), penalty: Penalty::CrossValidated(grid) }
+    }
+}
+
+impl Nystrom {
+    /// Fits X (K×I) to Y (m×I) with Gaussians on `centres` of the samples, evenly spaced.
+    pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>, centres: usize) -> Result<Fit> {
+        let problem = Problem::new(x, y)?;
+        let samples = x.ncols();
+        check::count(centres, samples)?;
+        let spaced: Vec<usize> = (0..centres).map(|c| c * samples / centres).collect();
+        let kernel = Kernel::Gaussian(self.width);
+        let columns = Columns::of(&problem, problem.features(), kernel, &spaced)?.centred();
+        drop(problem);
+        let mut sums = Sums::new(&columns);
+        for start in (0..samples).step_by(BATCH) {
+            let width = BATCH.min(samples - start);
+            sums.add(&columns, x.subcols(start, width), y.subcols(start, width))?;
+        }
+        self.fit_sums(&columns, &sums)
+    }
+
+    /// Fits sums over Gaussian columns of the same width.
+    pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
+        let grid = self.grid()?;
+        columns.check_kernel(Kernel::Gaussian(self.width))?;
+        let equations = Summed::new(columns, sums)?;
+        let whitened = Whitened::new(&equations)?;
+        let errors: Vec<f64> = grid.iter().map(|&lambda| whitened.error(lambda)).collect();
+        let best = (0..grid.len()).min_by(|&a, &b| errors[a].total_cmp(&errors[b]));
+        let lambda = grid[best.unwrap_or(0)];
+        let trace = Trace { converged: true, objective: errors };
+        let model = whitened.model(lambda)?;
+        Ok(Fit { model, report: Report::new(vec![trace], Some(lambda)) })
+    }
+
+    fn grid(&self) -> Result<&[f64]> {
+        let grid = match &self.penalty {
+            Penalty::Given(lambda) => std::slice::from_ref(lambda),
+            Penalty::CrossValidated(grid) => grid,
+        };
+        check::grid(grid)?;
+        Ok(grid)
+    }
+}
+
+/// The equations of columns L⁻¹φ, for which the penalty is plain ridge regression's.
+struct Whitened<'a> {
+    equations: &'a Summed<'a>,
+    /// L with L Lᵀ = K + jitter.
+    lower: Mat<f64>,
+    gram: Mat<f64>,
+    correlations: Mat<f64>,
+}
+
+impl<'a> Whitened<'a> {
+    fn new(equations: &'a Summed<'a>) -> Result<Self> {
+        let mut kernel = equations.columns().between_centres().unwrap_or_else(|| Mat::zeros(0, 0));
+        let size = kernel.ncols();
+        for k in 0..size {
+            kernel[(k, k)] += JITTER;
+        }
+        let lower = linalg::cholesky(kernel).ok_or(Error::Singular { size })?;
+        let mut half = equations.gram();
+        linalg::lower_solve(lower.as_ref(), &mut half);
+        let mut gram = half.transpose().to_owned();
+        linalg::lower_solve(lower.as_ref(), &mut gram);
+        let mut correlations = equations.correlations();
+        linalg::lower_solve(lower.as_ref(), &mut correlations);
+        Ok(Self { equations, lower, gram, correlations })
+    }
+
+    fn solve(&self, lambda: f64) -> Result<Penalised> {
+        Penalised::ridge(self.gram.as_ref(), self.correlations.as_ref(), lambda)
+    }
+
+    /// Mean squared generalised cross-validation error.
+    fn error(&self, lambda: f64) -> f64 {
+        let Ok(solved) = self.solve(lambda) else { return f64::INFINITY };
+        let (_, used) = solved.posterior();
+        let (samples, targets) =
+            (self.equations.samples() as f64, self.correlations.ncols() as f64);
+        let left = samples - 1.0 - used;
+        if left <= 0.0 {
+            return f64::INFINITY;
+        }
+        // At the minimum the squared error is ‖Y‖² − tr(VᵀB) − λ‖V‖².
+        let weights = solved.weights.as_ref();
+        let explained = linalg::inner(weights, self.correlations.as_ref());
+        let residual = self.equations.energy() - explained - lambda * weights.squared_norm_l2();
+        samples * residual.max(0.0) / (left * left * targets)
+    }
+
+    fn model(&self, lambda: f64) -> Result<crate::Model> {
+        let solved = self.solve(lambda)?;
+        let (mut factor, used) = solved.posterior();
+        let lower = self.lower.as_ref();
+        let mut weights = solved.weights;
+        linalg::upper_solve(lower.transpose(), &mut weights);
+        // M of the columns themselves is M L⁻¹.
+        factor = factor.transpose().to_owned();
+        linalg::upper_solve(lower.transpose(), &mut factor);
+        let kept: Vec<usize> = (0..lower.ncols()).collect();
+        let noise = penalised::noise(self.equations, &kept, weights.as_ref(), used);
+        let factor = Factor::pack(kept.clone(), factor.transpose());
+        let posterior = Posterior::Weights(vec![factor]);
+        Ok(equations::model(self.equations, &kept, weights.as_ref(), &noise, posterior))
+    }
+}
