@@ -7,9 +7,11 @@ mod described;
 mod experiments;
 mod files;
 mod fixtures;
+mod held_out;
 mod lab;
 mod metrics;
 mod neighbours;
+mod orientation;
 mod performance;
 mod pictures;
 mod principal_axes;
@@ -44,6 +46,9 @@ enum Command {
     /// Reproduce the paper's Table 1 beside its own figures.
     #[command(name = "eval-table1")]
     EvalTable1(table1::Arguments),
+    /// Test on what was never seen: other motion, hands, cameras, silhouettes.
+    #[command(name = "eval-held-out")]
+    EvalHeldOut(held_out::Arguments),
     /// Put one of the paper's figures or claims to the test.
     Experiment(experiments::Arguments),
     /// Regenerate the files in fixtures/, or check that they are as generated.
@@ -76,6 +81,7 @@ fn run(arguments: &Arguments) -> Result<()> {
     pool.context("starting worker threads")?.install(|| match &arguments.command {
         Command::Train(arguments) => train::run(arguments),
         Command::EvalTable1(arguments) => table1::run(arguments),
+        Command::EvalHeldOut(arguments) => held_out::run(arguments),
         Command::Experiment(arguments) => experiments::run(arguments),
         Command::Fixtures(arguments) => fixtures::run(arguments),
         Command::SkinModel(arguments) => skin_model::run(arguments),

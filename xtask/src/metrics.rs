@@ -52,6 +52,15 @@ impl AngleErrors {
         self.std.iter().sum::<f64>() / self.std.len() as f64
     }
 
+    /// Mean absolute error of one of the dofs, degrees.
+    ///
+    /// # Panics
+    /// When it is not one of those compared.
+    pub(crate) fn of(&self, dof: Dof) -> f64 {
+        let place = self.dofs.iter().position(|&other| other == dof);
+        self.mean[place.expect("the dof was compared")]
+    }
+
     /// The dof with the largest mean error, and that error in degrees.
     pub(crate) fn worst(&self) -> (Dof, f64) {
         let pairs = self.dofs.iter().copied().zip(self.mean.iter().copied());

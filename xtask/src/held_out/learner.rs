@@ -5,6 +5,7 @@ use faer::Mat;
 use phalanx::{
     OrientationRule, Progress, Scenes, ViewCodebooks, describe_each, describe_with, targets,
 };
+use phalanx_hand::Pose;
 use phalanx_multiview::Vocabulary;
 use phalanx_shape_context::BINS;
 use rayon::prelude::*;
@@ -23,6 +24,8 @@ pub(crate) struct Learner {
     pub(crate) train_samples: usize,
     pub(crate) codebooks: ViewCodebooks,
     pub(crate) predictors: Vec<(Method, Predictor)>,
+    /// What guessing without looking says.
+    pub(crate) mean: Predictor,
 }
 
 /// Learns from a set through each choice of cameras. The pictures are drawn once.
@@ -44,8 +47,9 @@ pub(crate) fn learn(
             Ok((method, predictor.with_context(|| method.name())?))
         };
         let predictors = methods.par_iter().map(fit).collect::<Result<_>>()?;
+        let mean = Method::Mean.fit(&samples, counts)?;
         let train_samples = samples.x.ncols();
-        Ok(Learner { train: set.name, train_samples, codebooks, predictors })
+        Ok(Learner { train: set.name, train_samples, codebooks, predictors, mean })
     };
     codebooks.into_iter().zip(samples).map(learner).collect()
 }
@@ -117,12 +121,15 @@ pub(crate) fn describe(
     let all: Vec<usize> = (0..set.count()).collect();
     progress.begin(&format!("see {}", set.name), all.len());
     let described = describe_with(set.rig, set, &all, rule, codebooks, progress)?;
-    let (mut numbers, mut columns, mut first) = (Vec::new(), Vec::new(), None);
+    let (mut numbers, mut first) = (Vec::new(), None);
+    let mut columns = vec![Vec::new(); codebooks.len()];
     for (number, described) in all.into_iter().zip(described) {
         match described {
             Ok(described) => {
                 numbers.push(number);
-                columns.push(described);
+                for (columns, x) in columns.iter_mut().zip(described) {
+                    columns.push(x);
+                }
             }
             Err(error) => first = first.or(Some(error)),
         }
@@ -135,10 +142,12 @@ pub(crate) fn describe(
         eprintln!("{}: {left_out} of {all} are left out; the first: {error:#}", set.name);
     }
     let poses: Vec<_> = numbers.iter().map(|&number| set.poses[number]).collect();
-    let samples = |(k, codebooks): (usize, &ViewCodebooks)| Samples {
-        x: Mat::from_fn(codebooks.codebooks.dim(), columns.len(), |row, i| columns[i][k][row]),
-        y: targets(&poses),
-    };
-    let samples = codebooks.iter().enumerate().map(samples).collect();
+    let samples = columns.iter().map(|columns| joined(columns, &poses)).collect();
     Ok(Seen { numbers, samples })
+}
+
+/// Descriptors as the columns of a matrix, with their poses.
+pub(crate) fn joined(columns: &[Vec<f64>], poses: &[Pose]) -> Samples {
+    let dim = columns.first().map_or(0, Vec::len);
+    Samples { x: Mat::from_fn(dim, columns.len(), |row, i| columns[i][row]), y: targets(poses) }
 }

@@ -1,24 +1,30 @@
 //! `cargo xtask eval-held-out`: tests on what was never seen, which the paper did not take.
 
+mod errors;
 mod learner;
+mod masks;
 mod method;
 mod print;
 mod row;
 mod sets;
+mod timing;
 
 use std::path::PathBuf;
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
-use phalanx::{OrientationRule, Progress};
+use phalanx::{OrientationRule, Progress, Scenes};
 use phalanx_camera::Rig;
-use phalanx_hand::{HandShape, Pose};
+use phalanx_hand::HandShape;
 use serde::Serialize;
 
 use crate::data_set::DataSet;
+use crate::orientation::Orientation;
 use crate::table1::single_view;
 use crate::{files, progress};
+use errors::Truth;
 use learner::{Learner, describe, learn};
+use masks::Masks;
 use method::Method;
 use row::Row;
 use sets::{Augment, Set, Test};
@@ -49,8 +55,22 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE.csv")]
     poses: Option<PathBuf>,
     /// Which way shape contexts are turned.
-    #[arg(long, value_enum, default_value_t)]
-    orientation: crate::orientation::Rule,
+    #[arg(long, value_enum)]
+    orientation: Option<Orientation>,
+    /// Folders of silhouettes, one for each camera of the rig and named like it, with the truth in
+    /// `poses.csv`, whose column `frame` names the files: the one test then, unless others are
+    /// named too.
+    #[arg(long, value_name = "DIR")]
+    masks: Option<PathBuf>,
+    /// The rig, TOML; the desk of fixtures/ by default.
+    #[arg(long, value_name = "FILE.toml")]
+    rig: Option<PathBuf>,
+    /// The hand to learn from, TOML; the mean adult of fixtures/ by default.
+    #[arg(long, value_name = "FILE.toml")]
+    hand: Option<PathBuf>,
+    /// Add microseconds per estimate, from three silhouettes to a pose, on one thread.
+    #[arg(long)]
+    timing: bool,
     /// Write the rows as JSON too.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -67,4 +87,111 @@ enum TrainingSet {
 #[derive(Serialize)]
 struct Table {
     rows: Vec<Row>,
+}
+
+/// The rig and the hand that are learnt for.
+struct Ground {
+    rig: Rig,
+    hand: HandShape,
+    rule: OrientationRule,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let ground = Ground {
+        rig: files::rig(arguments.rig.as_deref())?,
+        hand: files::hand(arguments.hand.as_deref())?,
+        rule: arguments.orientation.map_or_else(OrientationRule::default, Orientation::rule),
+    };
+    let motion = arguments.poses.as_deref().map(files::poses).transpose()?;
+    let motion = motion.map_or_else(Vec::new, |table| table.poses);
+    let masks =
+        arguments.masks.as_deref().map(|folder| Masks::read(folder, &ground)).transpose()?;
+    let bar = progress::Bar::new();
+    let mut learners = Vec::new();
+    for set in training_sets(arguments, &ground)? {
+        learners.extend(learn(&set, &views(&ground.rig), ground.rule, &methods(arguments), &bar)?);
+    }
+    let mut rows = Vec::new();
+    for test in tests(arguments)? {
+        let set = test.set(&ground.rig, &ground.hand, &motion);
+        rows.extend(test_on(&set, &learners, &ground, &bar)?);
+    }
+    if let Some(masks) = &masks {
+        rows.extend(masks.test(&learners, &ground)?);
+    }
+    if arguments.timing {
+        timing::add(&mut rows, &learners, &ground)?;
+    }
+    drop(bar);
+    finish(arguments, rows)
+}
+
+fn finish(arguments: &Arguments, rows: Vec<Row>) -> Result<()> {
+    files::print(&print::tables(&rows))?;
+    let Some(path) = &arguments.json else { return Ok(()) };
+    let mut json = serde_json::to_vec_pretty(&Table { rows })?;
+    json.push(b'\n');
+    files::write_whole(path, &json)
+}
+
+/// Every learner's every method on one test set.
+fn test_on(
+    set: &Set<'_>,
+    learners: &[Learner],
+    ground: &Ground,
+    progress: &dyn Progress,
+) -> Result<Vec<Row>> {
+    let codebooks: Vec<_> = learners.iter().map(|learner| learner.codebooks.clone()).collect();
+    let seen = describe(set, ground.rule, &codebooks, progress)?;
+    let truth = Truth::of(seen.numbers.iter().map(|&number| set.scene(number)), ground);
+    row::rows(set.name, learners, &seen.samples, &truth, ground)
+}
+
+/// One view (the top, or the first of a rig without one), then all.
+fn views(rig: &Rig) -> Vec<Vec<usize>> {
+    let single = single_view(rig).unwrap_or(0);
+    let all: Vec<usize> = (0..rig.cameras.len()).collect();
+    if all.len() == 1 { vec![all] } else { vec![vec![single], all] }
+}
+
+fn training_sets<'a>(arguments: &Arguments, ground: &'a Ground) -> Result<Vec<Set<'a>>> {
+    let Ground { rig, hand, .. } = ground;
+    ensure!(arguments.samples >= 100, "--samples: {} are too few to learn from", arguments.samples);
+    let random = |augment| sets::random(rig, hand, arguments.samples, augment);
+    let stored = |name| -> Result<Set<'a>> {
+        Ok(sets::clean(name, rig, hand, DataSet::stored(name)?.poses))
+    };
+    ensure!(
+        !arguments.augment || arguments.data_set == Some(TrainingSet::Random),
+        "--augment goes with --data-set random"
+    );
+    Ok(match arguments.data_set {
+        Some(TrainingSet::OpenClose) => vec![stored("open-close")?],
+        Some(TrainingSet::Complex) => vec![stored("complex")?],
+        Some(TrainingSet::Random) if arguments.augment => vec![random(Augment::Yes)],
+        Some(TrainingSet::Random) => vec![random(Augment::No)],
+        None => vec![stored("complex")?, random(Augment::No), random(Augment::Yes)],
+    })
+}
+
+fn methods(arguments: &Arguments) -> Vec<Method> {
+    let all = Method::value_variants();
+    if arguments.methods.is_empty() { all.to_vec() } else { arguments.methods.clone() }
+}
+
+/// The synthetic tests. `poses` is one of them where there is motion from outside.
+fn tests(arguments: &Arguments) -> Result<Vec<Test>> {
+    let outside = arguments.poses.is_some();
+    ensure!(
+        outside || !arguments.tests.contains(&Test::Poses),
+        "the test 'poses' needs motion: --poses FILE.csv"
+    );
+    if !arguments.tests.is_empty() {
+        return Ok(arguments.tests.clone());
+    }
+    if arguments.masks.is_some() {
+        return Ok(if outside { vec![Test::Poses] } else { Vec::new() });
+    }
+    let possible = |test: &Test| outside || *test != Test::Poses;
+    Ok(Test::value_variants().iter().copied().filter(possible).collect())
 }
