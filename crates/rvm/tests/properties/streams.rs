@@ -181,7 +181,7 @@ proptest! {
         let rows: Vec<Vec<f64>> = (0..n).map(row).collect();
         let sums = summed(&columns, x.as_ref().subcols(0, n), y.as_ref().subcols(0, n))?;
         prop_assert_eq!(sums.samples(), n);
-        let pairs = (0..p + m + 1).flat_map(|b| (b..p + m + 1).map(move |a| (a, b)));
+        let pairs = (0..=p + m).flat_map(|b| (b..=p + m).map(move |a| (a, b)));
         prop_assert_eq!(sums.parts().packed.len(), pairs.clone().count());
         for ((a, b), &units) in pairs.zip(&sums.parts().packed) {
             let expected: f64 = rows.iter().map(|row| row[a] * row[b]).sum();
