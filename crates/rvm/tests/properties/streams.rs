@@ -239,6 +239,21 @@ fn parts_that_do_not_fit_are_named() {
     }
 }
 
+/// Parts from outside may claim other counts with as many numbers, under the same fingerprint.
+#[test]
+fn sums_of_other_counts_belong_to_no_columns() {
+    let (x, y) = smooth(4, 5, 3, 30);
+    let columns = whole(x.as_ref(), y.as_ref(), Kernel::Linear).unwrap();
+    let own = summed(&columns, x.as_ref(), y.as_ref()).unwrap();
+    let SumsParts { columns: fingerprint, size, outputs, packed } = own.clone().into_parts();
+    let parts = SumsParts { columns: fingerprint, size: size + 1, outputs: outputs - 1, packed };
+    let mut claimed = Sums::from_parts(parts).unwrap();
+    let other = |result| matches!(result, Err(Error::OtherColumns { .. }));
+    assert!(other(claimed.add(&columns, x.as_ref(), y.as_ref())));
+    assert!(other(claimed.merge(&own)));
+    assert!(other(Ridge::default().fit_sums(&columns, &claimed).map(|_| ())));
+}
+
 #[test]
 fn samples_that_cannot_be_summed_are_named_and_change_nothing() {
     let (x, y) = smooth(4, 5, 3, 30);
