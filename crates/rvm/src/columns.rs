@@ -93,8 +93,8 @@ impl Columns {
     ) -> Result<Self> {
         kernel.check()?;
         let size = match kernel {
-            Kernel::Linear => features.len(),
-            Kernel::Gaussian(_) => centres.len(),
+            Kernel::Gaussian(_) if !features.is_empty() => centres.len(),
+            _ => features.len(),
         };
         if size > MOST_COLUMNS {
             return Err(Error::TooManyColumns { columns: size, limit: MOST_COLUMNS });
@@ -109,7 +109,6 @@ impl Columns {
             }),
             _ => None,
         };
-        let size = if features.is_empty() { 0 } else { size };
         let (inputs, targets) = (problem.inputs.clone(), problem.targets.clone());
         Ok(Self { inputs, targets, kernel, features, gaussians, origins: vec![0.0; size] })
     }

@@ -7,11 +7,12 @@ use crate::model::{Factor, Posterior};
 use crate::penalised::{self, Penalised};
 use crate::problem::Problem;
 use crate::sums::{Summed, Sums};
-use crate::{Columns, Error, Fit, Kernel, Report, Result, Trace, Width, check, linalg};
+use crate::{Columns, Error, Fit, Kernel, Model, Report, Result, Trace, Width, check, linalg};
 
-/// Added to the kernel's diagonal of ones, so that directions in which the centres' Gaussians
-/// depend on each other to working precision are not blown up.
-const JITTER: f64 = 1e-8;
+/// Added to the kernel's diagonal of ones. Where the centres' Gaussians depend on each other,
+/// whitening divides the rounding of G by this: a smaller one leaves small λ unsolvable for many
+/// centres among few inputs. It moves predictions by at most about its share of λ.
+const JITTER: f64 = 1e-6;
 /// Samples that `fit` adds at a time.
 const BATCH: usize = 4096;
 
@@ -32,8 +33,7 @@ pub enum Penalty {
 /// approximation).
 ///
 /// It minimises ‖Y − WΦ‖² + λ tr(W K Wᵀ), with K the kernel between the centres, so λ means what
-/// it means to [`KernelRidge`](crate::KernelRidge), and with all samples as centres the two agree.
-/// It is solved for V = W L, where L Lᵀ = K + 10⁻⁸ I. The trace holds the mean squared
+/// it means to [`KernelRidge`](crate::KernelRidge), and with all samples as centres the two agree. It is solved for V = W L, where L Lᵀ = K + 10⁻⁶ I. The trace holds the mean squared
 /// generalised cross-validation error of each λ of the grid, in standardised units (infinite where
 /// a λ is too small to be solved for); the report's penalty is the λ taken.
 ///
@@ -148,7 +148,7 @@ impl<'a> Whitened<'a> {
         samples * residual.max(0.0) / (left * left * targets)
     }
 
-    fn model(&self, lambda: f64) -> Result<crate::Model> {
+    fn model(&self, lambda: f64) -> Result<Model> {
         let solved = self.solve(lambda)?;
         let (mut factor, used) = solved.posterior();
         let lower = self.lower.as_ref();

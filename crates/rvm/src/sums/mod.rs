@@ -54,7 +54,7 @@ impl Sums {
     /// Blocks are cut from the first sample of `x` on: to have the same bits in another run, add
     /// the same samples in each call. Working memory is 512 × (p + m + 1) numbers.
     pub fn add(&mut self, columns: &Columns, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<()> {
-        self.check_columns(columns.fingerprint())?;
+        self.check_columns(columns)?;
         columns.check_samples(x, y)?;
         self.check_room(x.ncols())?;
         for start in (0..x.ncols()).step_by(BLOCK) {
@@ -67,7 +67,8 @@ impl Sums {
 
     /// Adds the sums over other samples. On an error the sums are as they were.
     pub fn merge(&mut self, other: &Self) -> Result<()> {
-        self.check_columns(other.parts.columns)?;
+        let SumsParts { columns, size, outputs, .. } = other.parts;
+        self.check_same(columns, size, outputs)?;
         self.check_room(other.samples())?;
         for (sum, other) in self.parts.packed.iter_mut().zip(&other.parts.packed) {
             *sum += other;
@@ -97,9 +98,18 @@ impl Sums {
         });
     }
 
-    fn check_columns(&self, columns: u64) -> Result<()> {
-        let sums = self.parts.columns;
-        if sums == columns { Ok(()) } else { Err(Error::OtherColumns { sums, columns }) }
+    /// Refuses columns that are not the ones summed.
+    fn check_columns(&self, columns: &Columns) -> Result<()> {
+        self.check_same(columns.fingerprint(), columns.size(), columns.outputs())
+    }
+
+    /// The counts matter too: parts from outside may have any fingerprint.
+    fn check_same(&self, columns: u64, size: usize, outputs: usize) -> Result<()> {
+        let SumsParts { columns: sums, size: summed, outputs: targets, .. } = self.parts;
+        if (sums, summed, targets) == (columns, size, outputs) {
+            return Ok(());
+        }
+        Err(Error::OtherColumns { sums, columns })
     }
 
     fn check_room(&self, more: usize) -> Result<()> {

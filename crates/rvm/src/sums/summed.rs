@@ -20,7 +20,7 @@ pub(crate) struct Summed<'a> {
 
 impl<'a> Summed<'a> {
     pub(crate) fn new(columns: &'a Columns, sums: &Sums) -> Result<Self> {
-        sums.check_columns(columns.fingerprint())?;
+        sums.check_columns(columns)?;
         let samples = sums.samples();
         if samples == 0 {
             return Err(Error::Empty { what: "sums", rows: sums.parts.size, columns: 0 });

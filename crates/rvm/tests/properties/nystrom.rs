@@ -21,6 +21,11 @@ fn kernel(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
     })
 }
 
+/// The penalty's matrix, with the jitter.
+fn penalty(centres: MatRef<'_, f64>) -> Mat<f64> {
+    kernel(centres, centres) + 1e-6 * Mat::<f64>::identity(centres.ncols(), centres.ncols())
+}
+
 /// With every row's mean taken off.
 fn centred(mut rows: Mat<f64>) -> Mat<f64> {
     for i in 0..rows.nrows() {
@@ -30,7 +35,7 @@ fn centred(mut rows: Mat<f64>) -> Mat<f64> {
     rows
 }
 
-/// (G + λK)⁻¹ and the hat matrix Φᵀ(G + λK)⁻¹Φ for centred columns Φ (p×n).
+/// The hat matrix Φᵀ(G + λK)⁻¹Φ for centred columns Φ (p×n).
 fn hat(phi: &Mat<f64>, between: &Mat<f64>, lambda: f64) -> Mat<f64> {
     let system = phi * phi.transpose() + lambda * between;
     phi.transpose() * solve(system.as_ref(), phi.as_ref())
@@ -47,7 +52,7 @@ proptest! {
         let expected = dense.fit(x.as_ref(), y.as_ref())?.model.predict(new.as_ref())?;
         let fit = nystrom(Penalty::Given(lambda)).fit(x.as_ref(), y.as_ref(), 40)?;
         let found = fit.model.predict(new.as_ref())?;
-        prop_assert!(close(found.as_ref(), expected.as_ref(), 1e-5));
+        prop_assert!(close(found.as_ref(), expected.as_ref(), 1e-4));
     }
 
     #[test]
@@ -61,7 +66,7 @@ proptest! {
         let centres = columns(z.as_ref(), &spaced);
         let raw = kernel(centres.as_ref(), z.as_ref());
         let phi = centred(raw.clone());
-        let between = kernel(centres.as_ref(), centres.as_ref());
+        let between = penalty(centres.as_ref());
         let system = &phi * phi.transpose() + lambda * &between;
         let weights = solve(system.as_ref(), (&phi * t.transpose()).as_ref());
         let mut new_phi = kernel(centres.as_ref(), inputs.apply(new.as_ref())?.as_ref());
@@ -96,7 +101,7 @@ proptest! {
         let t = Standardiser::fit(y.as_ref())?.apply(y.as_ref())?;
         let centres = columns(z.as_ref(), &spaced);
         let phi = centred(kernel(centres.as_ref(), z.as_ref()));
-        let between = kernel(centres.as_ref(), centres.as_ref());
+        let between = penalty(centres.as_ref());
         let grid = vec![1e-3, 0.1, 3.0];
         let expected = grid.iter().map(|&lambda| {
             let hat = hat(&phi, &between, lambda);
@@ -144,5 +149,5 @@ fn repeated_centres_are_solved() {
     sums.add(&doubled, x.as_ref(), y.as_ref()).unwrap();
     let found = fitter.fit_sums(&doubled, &sums).unwrap().model.predict(x.as_ref()).unwrap();
     let once = fitter.fit(x.as_ref(), y.as_ref(), 30).unwrap().model.predict(x.as_ref()).unwrap();
-    assert!(close(found.as_ref(), once.as_ref(), 1e-5));
+    assert!(close(found.as_ref(), once.as_ref(), 1e-4));
 }

@@ -181,7 +181,7 @@ proptest! {
         let rows: Vec<Vec<f64>> = (0..n).map(row).collect();
         let sums = summed(&columns, x.as_ref().subcols(0, n), y.as_ref().subcols(0, n))?;
         prop_assert_eq!(sums.samples(), n);
-        let pairs = (0..p + m + 1).flat_map(|b| (b..p + m + 1).map(move |a| (a, b)));
+        let pairs = (0..=p + m).flat_map(|b| (b..=p + m).map(move |a| (a, b)));
         prop_assert_eq!(sums.parts().packed.len(), pairs.clone().count());
         for ((a, b), &units) in pairs.zip(&sums.parts().packed) {
             let expected: f64 = rows.iter().map(|row| row[a] * row[b]).sum();
@@ -237,6 +237,21 @@ fn parts_that_do_not_fit_are_named() {
             other => panic!("{expected}: {other:?}"),
         }
     }
+}
+
+/// Parts from outside may claim other counts with as many numbers, under the same fingerprint.
+#[test]
+fn sums_of_other_counts_belong_to_no_columns() {
+    let (x, y) = smooth(4, 5, 3, 30);
+    let columns = whole(x.as_ref(), y.as_ref(), Kernel::Linear).unwrap();
+    let own = summed(&columns, x.as_ref(), y.as_ref()).unwrap();
+    let SumsParts { columns: fingerprint, size, outputs, packed } = own.clone().into_parts();
+    let parts = SumsParts { columns: fingerprint, size: size + 1, outputs: outputs - 1, packed };
+    let mut claimed = Sums::from_parts(parts).unwrap();
+    let other = |result| matches!(result, Err(Error::OtherColumns { .. }));
+    assert!(other(claimed.add(&columns, x.as_ref(), y.as_ref())));
+    assert!(other(claimed.merge(&own)));
+    assert!(other(Ridge::default().fit_sums(&columns, &claimed).map(|_| ())));
 }
 
 #[test]
