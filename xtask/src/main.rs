@@ -9,6 +9,7 @@ mod files;
 mod fixtures;
 mod held_out;
 mod lab;
+mod merge;
 mod metrics;
 mod neighbours;
 mod orientation;
@@ -17,6 +18,7 @@ mod pictures;
 mod principal_axes;
 mod progress;
 mod saturation;
+mod sets;
 mod skin_model;
 mod split;
 mod table1;
@@ -43,6 +45,8 @@ struct Arguments {
 enum Command {
     /// Learn an estimator from synthetic views and save it.
     Train(train::Arguments),
+    /// Join the parts of a training that was run in shards.
+    Merge(merge::Arguments),
     /// Reproduce the paper's Table 1 beside its own figures.
     #[command(name = "eval-table1")]
     EvalTable1(table1::Arguments),
@@ -80,6 +84,7 @@ fn run(arguments: &Arguments) -> Result<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.context("starting worker threads")?.install(|| match &arguments.command {
         Command::Train(arguments) => train::run(arguments),
+        Command::Merge(arguments) => merge::run(arguments),
         Command::EvalTable1(arguments) => table1::run(arguments),
         Command::EvalHeldOut(arguments) => held_out::run(arguments),
         Command::Experiment(arguments) => experiments::run(arguments),

@@ -1,19 +1,22 @@
 //! `cargo xtask train`: learns an estimator and saves it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Context, Result, ensure};
 use clap::Args;
-use phalanx::{Regressor, Training};
+use phalanx::{Estimator, Regressor, Shard, Training};
 use phalanx_camera::Rig;
+use phalanx_hand::HandShape;
 
 use crate::data_set::DataSet;
+use crate::held_out::method::nystrom;
+use crate::sets::{self, Augment};
 use crate::table1::{PaperCounts, TableMethod};
 use crate::{files, progress};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// `open-close`, `complex`, or a file of poses (CSV, degrees); where θ_Z does not vary in
+    /// `open-close`, `complex`, `random`, or a file of poses (CSV, degrees); where θ_Z does not vary in
     /// it, each pose is repeated at seven angles from 0° to 90°.
     #[arg(long, default_value = "complex")]
     data_set: String,
@@ -29,9 +32,32 @@ pub(crate) struct Arguments {
     /// The hand, TOML; the mean adult of fixtures/ by default.
     #[arg(long, value_name = "FILE.toml")]
     hand: Option<PathBuf>,
-    /// Where the model goes.
-    #[arg(long, value_name = "FILE", default_value = "target/hand.phalanx")]
-    out: PathBuf,
+    /// With `--data-set random`, how many independent poses are learnt from: 20,000 by default.
+    #[arg(long, value_name = "N")]
+    samples: Option<usize>,
+    /// With `--data-set random`, give every sample a hand of its own, moved cameras and a ragged
+    /// silhouette.
+    #[arg(long)]
+    augment: bool,
+    /// With `--data-set random`, do the i-th of n equal parts of the work and write it to `--out`;
+    /// `cargo xtask merge` joins the parts.
+    #[arg(long, value_name = "i/n", value_parser = shard)]
+    shard: Option<Shard>,
+    /// Where the model goes, or a shard's part; target/hand.phalanx by default.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// Where a model goes by default.
+const MODEL: &str = "target/hand.phalanx";
+
+/// Random poses that are learnt from, unless it is said how many.
+const RANDOM_SAMPLES: usize = 20_000;
+
+/// Which part of a training this run does, as `i/n`.
+fn shard(text: &str) -> Result<Shard> {
+    let (index, count) = text.split_once('/').context("not of the form i/n, such as 1/4")?;
+    Ok(Shard::new(index.parse()?, count.parse()?)?)
 }
 
 /// The regressor, with the paper's counts where it selects; dense kernel regression is that of
@@ -44,27 +70,63 @@ fn regressor(method: TableMethod, counts: PaperCounts) -> Regressor {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let hand = files::hand(arguments.hand.as_deref())?;
+    let rig = views(&files::rig(arguments.rig.as_deref())?, &arguments.views)?;
+    if arguments.data_set == "random" {
+        return random(arguments, &rig, &hand);
+    }
+    ensure!(
+        arguments.shard.is_none() && !arguments.augment && arguments.samples.is_none(),
+        "--samples, --augment and --shard go with --data-set random"
+    );
     let data_set = match arguments.data_set.as_str() {
         name @ ("open-close" | "complex") => DataSet::stored(name)?,
         path => DataSet::from_file("poses", path.as_ref())?,
     };
-    let rig = files::rig(arguments.rig.as_deref())?;
-    let hand = files::hand(arguments.hand.as_deref())?;
-    let rig = views(&rig, &arguments.views)?;
     let counts = PaperCounts::paper(rig.cameras.len(), &data_set.name);
     let regressor = regressor(arguments.kernels, counts);
     let training = Training { regressor, ..Training::default() };
     let bar = progress::Bar::new();
     let estimator = training.run(&rig, &hand, &data_set.poses, &bar)?;
     drop(bar);
+    save(&estimator, arguments.out.as_deref().unwrap_or(MODEL.as_ref()))
+}
+
+/// Learns from independent random poses, of which there may be any number.
+fn random(arguments: &Arguments, rig: &Rig, hand: &HandShape) -> Result<()> {
+    let augment = if arguments.augment { Augment::Yes } else { Augment::No };
+    let samples = arguments.samples.unwrap_or(RANDOM_SAMPLES);
+    let set = sets::random(rig, hand, samples, augment);
+    let regressor = match arguments.kernels {
+        TableMethod::KernelRidge => nystrom(),
+        method => regressor(method, PaperCounts::paper(rig.cameras.len(), set.name)),
+    };
+    let training = Training { regressor, ..Training::default() };
+    let bar = progress::Bar::new();
+    let part = training.shard(rig, hand, &set, arguments.shard.unwrap_or(Shard::WHOLE), &bar)?;
+    drop(bar);
+    if part.left_out() > 0 {
+        eprintln!("{} of {samples} samples could not be described", part.left_out());
+    }
+    if arguments.shard.is_none() {
+        let out = arguments.out.as_deref().unwrap_or(MODEL.as_ref());
+        return save(&part.finish()?, out);
+    }
+    let out = arguments.out.as_deref().context("--shard needs --out: where its part goes")?;
+    let bytes = part.to_bytes()?;
+    files::write_whole(out, &bytes)?;
+    files::print(&format!("{}: {} KiB\n", out.display(), bytes.len().div_ceil(1024)))
+}
+
+/// Writes a model and says what it is.
+pub(crate) fn save(estimator: &Estimator, out: &Path) -> Result<()> {
     let bytes = estimator.to_bytes()?;
-    files::write_whole(&arguments.out, &bytes)?;
-    let names: Vec<&str> = rig.cameras.iter().map(|camera| camera.name.as_str()).collect();
+    files::write_whole(out, &bytes)?;
+    let cameras = &estimator.rig().cameras;
+    let names: Vec<&str> = cameras.iter().map(|camera| camera.name.as_str()).collect();
     files::print(&format!(
-        "{}: {} poses of '{}' through {}; reads {} features, {} kernel centres; {} KiB\n",
-        arguments.out.display(),
-        data_set.poses.len(),
-        data_set.name,
+        "{}: learnt through {}; reads {} features, {} kernel centres; {} KiB\n",
+        out.display(),
         names.join(", "),
         estimator.model().selected_features().len(),
         estimator.model().kept_samples().len(),

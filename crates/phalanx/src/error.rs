@@ -109,40 +109,91 @@ pub enum Error {
         /// Width and height of the camera's image, px.
         expected: (u32, u32),
     },
-    /// The bytes are not a model of this project.
-    #[error("not a phalanx model: the file does not begin with its mark")]
-    ForeignModel,
-    /// A model of a format that this version does not read.
-    #[error("the model has format {found}; this version reads format {known}")]
-    ModelVersion {
+    /// The bytes are not a file of this project.
+    #[error("not a phalanx {what}: the file does not begin with its mark")]
+    ForeignFile {
+        /// What was to be read.
+        what: &'static str,
+    },
+    /// A file of a format that this version does not read.
+    #[error("the {what} has format {found}; this version reads format {known}")]
+    FileVersion {
+        /// What was to be read.
+        what: &'static str,
         /// The file's format.
         found: u32,
         /// The format that is read.
         known: u32,
     },
-    /// A model file that is shorter or longer than its header says.
+    /// A file that is shorter or longer than its header says.
     #[error(
-        "the model file is truncated or has been added to: {found} bytes where its header says {expected}"
+        "the {what} file is truncated or has been added to: {found} bytes where its header says {expected}"
     )]
-    ModelLength {
+    FileLength {
+        /// What was to be read.
+        what: &'static str,
         /// Bytes announced.
         expected: u64,
         /// Bytes present.
         found: u64,
     },
-    /// A model file whose checksum does not match.
-    #[error("the model file is corrupt: checksum {found:08x} where its header says {expected:08x}")]
-    ModelChecksum {
+    /// A file whose checksum does not match.
+    #[error(
+        "the {what} file is corrupt: checksum {found:08x} where its header says {expected:08x}"
+    )]
+    FileChecksum {
+        /// What was to be read.
+        what: &'static str,
         /// Checksum announced.
         expected: u32,
         /// Checksum computed.
         found: u32,
     },
-    /// A model whose content cannot be decoded or contradicts itself.
-    #[error("the model file is corrupt: {reason}")]
-    ModelContent {
+    /// A file whose content cannot be decoded or contradicts itself.
+    #[error("the {what} file is corrupt: {reason}")]
+    FileContent {
+        /// What was to be read.
+        what: &'static str,
         /// What is wrong.
         reason: String,
+    },
+    /// A shard that there is not.
+    #[error("there is no shard {index} of {count}: they are numbered from 1 to {count}")]
+    Shard {
+        /// Its number.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A regressor that cannot be learnt in shards.
+    #[error("{regressor} cannot be learnt in shards: {reason}")]
+    NotInShards {
+        /// Which.
+        regressor: &'static str,
+        /// Why not.
+        reason: &'static str,
+    },
+    /// Parts of different trainings.
+    #[error("the parts are not of one training: they differ in {what}")]
+    ForeignPart {
+        /// What they differ in.
+        what: &'static str,
+    },
+    /// Parts that hold the same samples.
+    #[error("two parts both hold samples {first} to {last}")]
+    Overlap {
+        /// The first sample that both hold.
+        first: usize,
+        /// The last one of its block.
+        last: usize,
+    },
+    /// Samples that no part holds.
+    #[error("a part is missing: none holds samples {first} to {last}")]
+    MissingPart {
+        /// The first missing sample.
+        first: usize,
+        /// The last one of its block.
+        last: usize,
     },
 }
 

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod container;
 mod damage;
 mod describe;
 mod error;
@@ -7,10 +8,13 @@ mod estimator;
 mod histograms;
 mod model_file;
 mod overlay;
+mod part;
 mod picture;
 mod progress;
 mod random;
+mod regressor;
 mod scene;
+mod shard;
 mod training;
 mod training_views;
 
@@ -20,11 +24,14 @@ pub use error::{Error, Result};
 pub use estimator::{Estimate, Estimator, Workspace};
 pub use histograms::{ViewCodebooks, describe_with};
 pub use overlay::{draw_overlay, working_window};
+pub use part::Part;
 pub use picture::{Picture, Segmenter};
 pub use progress::{Progress, Silent};
 pub use random::ItemRandom;
+pub use regressor::Regressor;
 pub use scene::{NominalScenes, Scene, Scenes, View};
-pub use training::{Regressor, Training, descriptors, targets};
+pub use shard::Shard;
+pub use training::{Training, descriptors, targets};
 pub use training_views::{
     PoseContexts, SceneDescriber, describe_each, describe_poses, draw_silhouette,
 };

@@ -4,12 +4,10 @@ use faer::Mat;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_multiview::{Concatenation, Scratch, Vocabulary};
-use phalanx_rvm::{
-    Bridges, Cascade, Fit, ForwardSelection, KernelRidge, Lambda, Ridge, Tipping, Width,
-};
+use phalanx_rvm::{KernelRidge, Lambda, Width};
 use rayon::prelude::*;
 
-use crate::{Error, Estimator, OrientationRule, Progress, Result, describe_poses};
+use crate::{Error, Estimator, OrientationRule, Progress, Regressor, Result, describe_poses};
 
 /// How an estimator is learnt. The default is the paper's recipe with dense kernel regression.
 ///
@@ -36,43 +34,6 @@ impl Default for Training {
                 lambda: Lambda::Given(0.01),
             }),
         }
-    }
-}
-
-/// A regressor from descriptors to poses.
-#[derive(Debug, Clone)]
-#[non_exhaustive]
-pub enum Regressor {
-    /// Ridge regression.
-    Ridge(Ridge),
-    /// Agarwal and Triggs' column-wise quadratic bridges: the paper's "lin" and "gauss".
-    Bridges(Bridges),
-    /// Features selected linearly, then samples by Gaussian kernels: the paper's "both".
-    Cascade(Cascade),
-    /// Orthogonal forward selection over all outputs.
-    Forward(ForwardSelection),
-    /// Tipping's relevance vector machine, one per output.
-    Tipping(Tipping),
-    /// Dense kernel ridge regression.
-    KernelRidge(KernelRidge),
-}
-
-impl Regressor {
-    /// Fits targets `y`, m × I, to descriptors `x`, K × I; samples are columns.
-    ///
-    /// # Errors
-    /// What the regressor says of its parameters or its data.
-    pub fn fit(&self, x: &Mat<f64>, y: &Mat<f64>) -> Result<Fit> {
-        let (x, y) = (x.as_ref(), y.as_ref());
-        let fit = match self {
-            Self::Ridge(fitter) => fitter.fit(x, y),
-            Self::Bridges(fitter) => fitter.fit(x, y),
-            Self::Cascade(fitter) => fitter.fit(x, y),
-            Self::Forward(fitter) => fitter.fit(x, y),
-            Self::Tipping(fitter) => fitter.fit(x, y),
-            Self::KernelRidge(fitter) => fitter.fit(x, y),
-        };
-        Ok(fit?)
     }
 }
 

@@ -11,8 +11,8 @@ use phalanx_shape_context::BINS;
 use rayon::prelude::*;
 
 use super::method::{Method, Predictor};
-use super::sets::Set;
 use crate::described::Samples;
+use crate::sets::Set;
 use crate::table1::PaperCounts;
 
 /// Scenes, evenly spaced, whose shape contexts the codebooks are learnt from.

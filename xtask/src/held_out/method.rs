@@ -3,7 +3,8 @@
 use anyhow::{Context, Result};
 use clap::ValueEnum;
 use faer::{Mat, MatRef};
-use phalanx_rvm::{KernelRidge, Model, Width};
+use phalanx::Regressor;
+use phalanx_rvm::{KernelRidge, Model, Nystrom, Width};
 
 use crate::described::Samples;
 use crate::metrics::mean_predictor;
@@ -51,27 +52,43 @@ impl Method {
     }
 
     pub(crate) fn fit(self, samples: &Samples, counts: PaperCounts) -> Result<Predictor> {
-        let of_table = |method: TableMethod| -> Result<Predictor> {
-            let regressor = method.regressor(counts).context("it is fitted")?;
+        let fitted = |regressor: &Regressor| -> Result<Predictor> {
             Ok(Predictor::Model(Box::new(regressor.fit(&samples.x, &samples.y)?.model)))
         };
+        let of_table =
+            |method: TableMethod| fitted(&method.regressor(counts).context("it is fitted")?);
         match self {
             Self::Mean => Ok(Predictor::Mean(mean_predictor(&samples.y, 1))),
             Self::Lin => of_table(TableMethod::Lin),
             Self::Gauss => of_table(TableMethod::Gauss),
             Self::Both => of_table(TableMethod::Both),
             Self::Forward => of_table(TableMethod::Forward),
-            Self::Kernel => {
-                let ridge = KernelRidge { width: Width::Scatter(0.5), ..KernelRidge::default() };
-                let fit = ridge.fit(samples.x.as_ref(), samples.y.as_ref())?;
-                Ok(Predictor::Model(Box::new(fit.model)))
-            }
+            Self::Kernel => fitted(&kernel_regression(samples.x.ncols())),
             Self::Knn5 => {
                 let (x, y) = (samples.x.clone(), samples.y.clone());
                 Ok(Predictor::Nearest(Samples { x, y }))
             }
         }
     }
+}
+
+/// Width of the kernels of `kernel`: wider than leave-one-out would have them, to which the
+/// neighbours in a sample's own sequence are near.
+const WIDTH: Width = Width::Scatter(0.5);
+
+/// Gaussian kernel regression with a kernel on each of so many samples or, of more than
+/// [`Regressor::CANDIDATES`], on as many of them.
+fn kernel_regression(samples: usize) -> Regressor {
+    if samples <= Regressor::CANDIDATES {
+        Regressor::KernelRidge(KernelRidge { width: WIDTH, ..KernelRidge::default() })
+    } else {
+        nystrom()
+    }
+}
+
+/// Gaussian kernel regression on many samples.
+pub(crate) fn nystrom() -> Regressor {
+    Regressor::Nystrom(Nystrom { width: WIDTH, ..Nystrom::default() })
 }
 
 impl Predictor {

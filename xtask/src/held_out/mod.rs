@@ -3,10 +3,9 @@
 mod errors;
 mod learner;
 mod masks;
-mod method;
+pub(crate) mod method;
 mod print;
 mod row;
-mod sets;
 mod timing;
 
 use std::path::PathBuf;
@@ -20,6 +19,7 @@ use serde::Serialize;
 
 use crate::data_set::DataSet;
 use crate::orientation::Orientation;
+use crate::sets::{self, Augment, Set, Test};
 use crate::table1::single_view;
 use crate::{files, progress};
 use errors::Truth;
@@ -27,7 +27,6 @@ use learner::{Learner, describe, learn};
 use masks::Masks;
 use method::Method;
 use row::Row;
-use sets::{Augment, Set, Test};
 
 /// Samples of the random training sets, unless it is said how many.
 const RANDOM_SAMPLES: usize = 5000;

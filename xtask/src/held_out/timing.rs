@@ -11,7 +11,7 @@ use phalanx_segmentation::Silhouette;
 use super::Ground;
 use super::learner::Learner;
 use super::row::Row;
-use super::sets::Test;
+use crate::sets::Test;
 
 /// Poses that are estimated again and again, and how often.
 const POSES: usize = 50;

@@ -62,17 +62,17 @@ fn truncated_or_longer_files_are_refused() {
     for length in lengths {
         let error = Estimator::from_bytes(&bytes[..length]).unwrap_err();
         match error {
-            Error::ForeignModel => assert!(length < 8, "{length}"),
-            Error::ModelLength { found, .. } => assert_eq!(found, length as u64),
+            Error::ForeignFile { .. } => assert!(length < 8, "{length}"),
+            Error::FileLength { found, .. } => assert_eq!(found, length as u64),
             other => panic!("{length} bytes: {other}"),
         }
     }
     let longer = [bytes.as_slice(), &[0]].concat();
-    assert!(matches!(Estimator::from_bytes(&longer), Err(Error::ModelLength { .. })));
+    assert!(matches!(Estimator::from_bytes(&longer), Err(Error::FileLength { .. })));
     // A payload that is cut and vouched for again.
     for length in (0..bytes.len() - HEADER).step_by(211) {
         let error = Estimator::from_bytes(&sealed(&bytes[HEADER..][..length])).unwrap_err();
-        assert!(matches!(error, Error::ModelContent { .. }), "{length} bytes: {error}");
+        assert!(matches!(error, Error::FileContent { .. }), "{length} bytes: {error}");
     }
     let error = Estimator::from_bytes(&sealed(&longer[HEADER..])).unwrap_err();
     assert!(error.to_string().contains("1 bytes are left over"), "{error}");
@@ -87,10 +87,10 @@ fn a_flipped_bit_is_noticed() {
         flipped[bit / 8] ^= 1 << (bit % 8);
         let error = Estimator::from_bytes(&flipped).unwrap_err();
         let expected = match bit / 8 {
-            0..8 => matches!(error, Error::ForeignModel),
-            8..12 => matches!(error, Error::ModelVersion { known: 1, .. }),
-            12..20 => matches!(error, Error::ModelLength { .. }),
-            _ => matches!(error, Error::ModelChecksum { .. }),
+            0..8 => matches!(error, Error::ForeignFile { .. }),
+            8..12 => matches!(error, Error::FileVersion { known: 1, .. }),
+            12..20 => matches!(error, Error::FileLength { .. }),
+            _ => matches!(error, Error::FileChecksum { .. }),
         };
         assert!(expected, "bit {bit}: {error}");
     }
@@ -107,7 +107,7 @@ fn other_files_and_formats_are_refused_by_name() {
     assert_eq!(message(&newer), "the model has format 2; this version reads format 1");
     let mut endless = bytes();
     endless[12..20].copy_from_slice(&u64::MAX.to_le_bytes());
-    assert!(matches!(Estimator::from_bytes(&endless), Err(Error::ModelLength { .. })));
+    assert!(matches!(Estimator::from_bytes(&endless), Err(Error::FileLength { .. })));
 }
 
 /// The largest number that a variable-length integer of the payload can hold.

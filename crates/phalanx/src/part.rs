@@ -1,0 +1,291 @@
+//! Training on any number of scenes that stream by, all at once or in parts.
+
+use faer::{Mat, MatRef};
+use phalanx_camera::Rig;
+use phalanx_hand::{Dof, HandShape};
+use phalanx_multiview::Concatenation;
+use phalanx_rvm::{Columns, Pilot, Sums};
+use serde::{Deserialize, Serialize};
+
+use crate::container::Container;
+use crate::regressor::evenly_spaced;
+use crate::shard::{BLOCK, scenes_of};
+use crate::{
+    Error, Estimator, OrientationRule, Progress, Regressor, Result, Scenes, Shard, Training,
+    ViewCodebooks, describe_each, describe_with, targets,
+};
+
+/// Scenes, evenly spaced, whose shape contexts the codebooks are learnt from.
+const CODEBOOK_SCENES: usize = 1000;
+
+const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 1 };
+
+/// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
+/// and to [`finish`](Self::finish) the estimator. Its size depends on the regressor's columns and
+/// not on the number of scenes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    basis: Basis,
+    scenes: usize,
+    /// The blocks that are in the sums, ascending, and how many scenes could not be described.
+    blocks: Vec<usize>,
+    left_out: usize,
+    sums: Sums,
+}
+
+/// What every part of a training must know before it begins; each finds it by itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Basis {
+    rig: Rig,
+    hand: HandShape,
+    orientation: OrientationRule,
+    regressor: Regressor,
+    codebooks: Concatenation,
+    /// Scenes that scaling and Gaussian centres are taken from, and their x (K) and y (28), one
+    /// after the other.
+    pilot: Vec<usize>,
+    pilot_x: Vec<f64>,
+    pilot_y: Vec<f64>,
+}
+
+impl Training {
+    /// Learns an estimator from scenes of a rig, of which there may be any number: none is kept.
+    /// Scenes that some camera does not show well enough are left out.
+    ///
+    /// The codebooks are learnt from at most a thousand of them, evenly spaced, and the regressor
+    /// has at most [`Regressor::CANDIDATES`] Gaussians. `rig` and `hand` are what the estimator
+    /// takes pictures to be of, whatever the scenes are.
+    ///
+    /// # Errors
+    /// As for [`shard`](Self::shard) and [`Part::finish`].
+    pub fn stream(
+        &self,
+        rig: &Rig,
+        hand: &HandShape,
+        scenes: &dyn Scenes,
+        progress: &dyn Progress,
+    ) -> Result<Estimator> {
+        self.shard(rig, hand, scenes, Shard::WHOLE, progress)?.finish()
+    }
+
+    /// One shard of [`stream`](Self::stream), for a run that has the same input as all others but
+    /// for its number. The shards' parts, merged in any order, give the bytes of a single run.
+    ///
+    /// # Errors
+    /// An unusable rig or hand, fewer than two scenes that can be described, a regressor that
+    /// needs its samples at once, or what the stages report.
+    pub fn shard(
+        &self,
+        rig: &Rig,
+        hand: &HandShape,
+        scenes: &dyn Scenes,
+        shard: Shard,
+        progress: &dyn Progress,
+    ) -> Result<Part> {
+        rig.validate()?;
+        hand.validate()?;
+        let basis = self.basis(rig, hand, scenes, progress)?;
+        let columns = basis.columns()?;
+        let blocks: Vec<usize> = shard.blocks(scenes.count()).collect();
+        let mut part =
+            Part { sums: Sums::new(&columns), scenes: scenes.count(), left_out: 0, blocks, basis };
+        let codebooks = [part.basis.codebooks()];
+        let shown = part.blocks.iter().map(|&block| scenes_of(block, part.scenes).len()).sum();
+        progress.begin("render, describe, sum", shown);
+        for &block in &part.blocks {
+            let numbers: Vec<usize> = scenes_of(block, part.scenes).collect();
+            let rule = self.orientation;
+            let described = describe_with(rig, scenes, &numbers, rule, &codebooks, progress)?;
+            let (kept, x) = described_ones(&numbers, described);
+            part.left_out += numbers.len() - kept.len();
+            if kept.is_empty() {
+                continue;
+            }
+            let y = targets_of(scenes, &kept);
+            part.sums.add(&columns, x.as_ref(), y.as_ref())?;
+        }
+        Ok(part)
+    }
+
+    fn basis(
+        &self,
+        rig: &Rig,
+        hand: &HandShape,
+        scenes: &dyn Scenes,
+        progress: &dyn Progress,
+    ) -> Result<Basis> {
+        self.regressor.summed()?;
+        let spaced =
+            Chosen { all: scenes, numbers: evenly_spaced(scenes.count(), CODEBOOK_SCENES) };
+        let described = describe_each(rig, &spaced, self.orientation, progress)?;
+        let (contexts, failed): (Vec<_>, Vec<_>) = described.into_iter().partition(Result::is_ok);
+        let contexts: Vec<_> = contexts.into_iter().filter_map(Result::ok).collect();
+        if contexts.len() < 2 {
+            let reason = failed.into_iter().find_map(Result::err);
+            return Err(reason.unwrap_or(Error::TooFewPoses { found: contexts.len() }));
+        }
+        progress.begin("cluster shape contexts", 1);
+        let codebooks = self.vocabulary.fit(&contexts, phalanx_shape_context::BINS)?;
+        drop(contexts);
+        progress.step();
+        let pilot = evenly_spaced(scenes.count(), Regressor::CANDIDATES);
+        let mut basis = Basis {
+            rig: rig.clone(),
+            hand: hand.clone(),
+            orientation: self.orientation,
+            regressor: self.regressor.clone(),
+            codebooks,
+            pilot: Vec::new(),
+            pilot_x: Vec::new(),
+            pilot_y: Vec::new(),
+        };
+        progress.begin("render and describe", pilot.len());
+        let codebooks = [basis.codebooks()];
+        let described = describe_with(rig, scenes, &pilot, self.orientation, &codebooks, progress)?;
+        let (kept, x) = described_ones(&pilot, described);
+        let y = targets_of(scenes, &kept);
+        basis.pilot_x = x.col_iter().flat_map(|column| column.iter().copied()).collect();
+        basis.pilot_y = y.col_iter().flat_map(|column| column.iter().copied()).collect();
+        basis.pilot = kept;
+        Ok(basis)
+    }
+}
+
+impl Basis {
+    /// The codebooks, each of the camera of its place.
+    fn codebooks(&self) -> ViewCodebooks {
+        let codebooks = self.codebooks.clone();
+        ViewCodebooks { views: (0..codebooks.views()).collect(), codebooks }
+    }
+
+    fn columns(&self) -> Result<Columns> {
+        let samples = self.pilot.len();
+        for (part, found, expected) in [
+            ("numbers of pilot descriptors", self.pilot_x.len(), samples * self.codebooks.dim()),
+            ("numbers of pilot poses", self.pilot_y.len(), samples * Dof::COUNT),
+        ] {
+            if found != expected {
+                return Err(Error::Mismatch { part, found, expected });
+            }
+        }
+        let pilot = Pilot {
+            x: MatRef::from_column_major_slice(&self.pilot_x, self.codebooks.dim(), samples),
+            y: MatRef::from_column_major_slice(&self.pilot_y, Dof::COUNT, samples),
+            samples: &self.pilot,
+        };
+        Ok(Columns::new(&pilot, self.regressor.summed()?)?)
+    }
+}
+
+impl Part {
+    /// How many scenes of all could not be described so far.
+    pub fn left_out(&self) -> usize {
+        self.left_out
+    }
+
+    /// Adds another part of the same training.
+    ///
+    /// # Errors
+    /// A part of another training, or one that holds a block that is here already.
+    pub fn merge(&mut self, other: Self) -> Result<()> {
+        for (what, differ) in [
+            ("their rigs", self.basis.rig != other.basis.rig),
+            ("their hands", self.basis.hand != other.basis.hand),
+            ("their numbers of scenes", self.scenes != other.scenes),
+            ("their regressors", self.basis.regressor != other.basis.regressor),
+            ("what they learn from", self.basis != other.basis),
+        ] {
+            if differ {
+                return Err(Error::ForeignPart { what });
+            }
+        }
+        if let Some(&block) = other.blocks.iter().find(|&block| self.blocks.contains(block)) {
+            let both = scenes_of(block, self.scenes);
+            return Err(Error::Overlap { first: both.start, last: both.end - 1 });
+        }
+        self.sums.merge(&other.sums)?;
+        self.blocks.extend(other.blocks);
+        self.blocks.sort_unstable();
+        self.left_out += other.left_out;
+        Ok(())
+    }
+
+    /// The estimator, once all parts are merged.
+    ///
+    /// # Errors
+    /// A missing part, or what the regressor reports.
+    pub fn finish(self) -> Result<Estimator> {
+        let all = self.scenes.div_ceil(BLOCK);
+        if let Some(missing) = (0..all).find(|block| self.blocks.get(*block) != Some(block)) {
+            let missing = scenes_of(missing, self.scenes);
+            return Err(Error::MissingPart { first: missing.start, last: missing.end - 1 });
+        }
+        let fit = self.basis.regressor.fit_sums(&self.basis.columns()?, &self.sums)?;
+        let Basis { rig, hand, orientation, codebooks, .. } = self.basis;
+        Estimator::from_parts(rig, hand, orientation, codebooks, fit.model)
+    }
+
+    /// The part's file.
+    ///
+    /// # Errors
+    /// None that a part can cause; encoding is fallible in form.
+    pub fn to_bytes(&self) -> Result<Vec<u8>> {
+        PART.encode(self)
+    }
+
+    /// Reads a part's file.
+    ///
+    /// # Errors
+    /// Bytes that are no part, of another format, truncated, corrupt, or that contradict
+    /// themselves.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        let part: Self = PART.decode(bytes)?;
+        part.basis.rig.validate()?;
+        part.basis.hand.validate()?;
+        let beyond = part.blocks.last().is_some_and(|last| *last >= part.scenes.div_ceil(BLOCK));
+        if beyond || !part.blocks.is_sorted_by(|a, b| a < b) {
+            let reason = "its blocks are not in order".to_owned();
+            return Err(Error::FileContent { what: PART.what, reason });
+        }
+        let columns = part.basis.columns()?;
+        // Sums refuse to be joined with those of other columns.
+        Sums::new(&columns).merge(&part.sums)?;
+        Ok(part)
+    }
+}
+
+/// Some scenes of others.
+struct Chosen<'a> {
+    all: &'a dyn Scenes,
+    numbers: Vec<usize>,
+}
+
+impl Scenes for Chosen<'_> {
+    fn count(&self) -> usize {
+        self.numbers.len()
+    }
+
+    fn scene(&self, number: usize) -> crate::Scene {
+        self.all.scene(self.numbers[number])
+    }
+}
+
+/// Which scenes could be described, and their descriptors.
+fn described_ones(
+    numbers: &[usize],
+    described: Vec<Result<Vec<Vec<f64>>>>,
+) -> (Vec<usize>, Mat<f64>) {
+    let kept: Vec<(usize, Vec<f64>)> = numbers
+        .iter()
+        .zip(described)
+        .filter_map(|(&number, described)| Some((number, described.ok()?.pop()?)))
+        .collect();
+    let dim = kept.first().map_or(0, |(_, x)| x.len());
+    let x = Mat::from_fn(dim, kept.len(), |row, i| kept[i].1[row]);
+    (kept.into_iter().map(|(number, _)| number).collect(), x)
+}
+
+fn targets_of(scenes: &dyn Scenes, numbers: &[usize]) -> Mat<f64> {
+    let poses: Vec<_> = numbers.iter().map(|&number| scenes.scene(number).pose).collect();
+    targets(&poses)
+}

@@ -1,0 +1,132 @@
+//! The regressors that an estimator can be learnt with.
+
+use faer::{Mat, MatRef};
+use phalanx_rvm::{
+    Bridges, Cascade, Columns, Fit, ForwardSelection, Kernel, KernelRidge, Nystrom, Pilot, Ridge,
+    Sums, Tipping,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::{Error, Result};
+
+/// Samples that are added to sums at a time.
+const BATCH: usize = 4096;
+
+/// A regressor from descriptors to poses.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Regressor {
+    /// Ridge regression.
+    Ridge(Ridge),
+    /// Agarwal and Triggs' column-wise quadratic bridges: the paper's "lin" and "gauss".
+    Bridges(Bridges),
+    /// Features selected linearly, then samples by Gaussian kernels: the paper's "both".
+    Cascade(Cascade),
+    /// Orthogonal forward selection over all outputs.
+    Forward(ForwardSelection),
+    /// Tipping's relevance vector machine, one per output.
+    Tipping(Tipping),
+    /// Dense kernel ridge regression.
+    KernelRidge(KernelRidge),
+    /// Kernel ridge regression on Gaussians of some of the samples.
+    Nystrom(Nystrom),
+}
+
+impl Regressor {
+    /// Most samples that Gaussians are put on by default. Of more, as many are candidates, evenly
+    /// spaced, while all are fitted to: then no matrix has a row or column for each sample.
+    pub const CANDIDATES: usize = 2000;
+
+    /// Fits targets `y`, m × I, to descriptors `x`, K × I; samples are columns. Of regressors with
+    /// Gaussians to choose from, those that work from sums see
+    /// [`CANDIDATES`](Self::CANDIDATES) of them.
+    ///
+    /// # Errors
+    /// What the regressor says of its parameters or its data.
+    pub fn fit(&self, x: &Mat<f64>, y: &Mat<f64>) -> Result<Fit> {
+        let (x, y) = (x.as_ref(), y.as_ref());
+        let few = x.ncols() <= Self::CANDIDATES;
+        let fit = match self {
+            Self::Ridge(fitter) => fitter.fit(x, y),
+            Self::Bridges(fitter) if few || fitter.kernel == Kernel::Linear => fitter.fit(x, y),
+            Self::Cascade(fitter) if few => fitter.fit(x, y),
+            Self::Forward(fitter) if few || fitter.kernel == Kernel::Linear => fitter.fit(x, y),
+            Self::Tipping(fitter) => fitter.fit(x, y),
+            Self::KernelRidge(fitter) => fitter.fit(x, y),
+            Self::Bridges(_) | Self::Cascade(_) | Self::Forward(_) | Self::Nystrom(_) => {
+                return self.fit_to_sums_of(x, y);
+            }
+        };
+        Ok(fit?)
+    }
+
+    /// The basis functions whose sums over the samples are all that a fit needs.
+    ///
+    /// # Errors
+    /// A regressor that needs the samples at once, or goes through them twice.
+    pub(crate) fn summed(&self) -> Result<Kernel> {
+        let not = |regressor, reason| Err(Error::NotInShards { regressor, reason });
+        match self {
+            Self::Ridge(_) => Ok(Kernel::Linear),
+            Self::Bridges(fitter) => Ok(fitter.kernel),
+            Self::Forward(fitter) => Ok(fitter.kernel),
+            Self::Nystrom(fitter) => Ok(Kernel::Gaussian(fitter.width)),
+            Self::Cascade(_) => {
+                not("both", "its features are selected before samples can be summed")
+            }
+            Self::Tipping(_) => not("Tipping's machine", "it needs all samples at once"),
+            Self::KernelRidge(_) => {
+                not("dense kernel regression", "it needs all samples at once; Nyström's does not")
+            }
+        }
+    }
+
+    /// Fits sums over the columns of [`summed`](Self::summed).
+    pub(crate) fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
+        self.summed()?;
+        Ok(match self {
+            Self::Ridge(fitter) => fitter.fit_sums(columns, sums)?,
+            Self::Bridges(fitter) => fitter.fit_sums(columns, sums)?,
+            Self::Forward(fitter) => fitter.fit_sums(columns, sums)?,
+            Self::Nystrom(fitter) => fitter.fit_sums(columns, sums)?,
+            Self::Cascade(_) | Self::Tipping(_) | Self::KernelRidge(_) => {
+                unreachable!("refused above")
+            }
+        })
+    }
+
+    /// Fits by way of sums over batches of the samples.
+    fn fit_to_sums_of(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
+        let chosen = evenly_spaced(x.ncols(), Self::CANDIDATES);
+        let [pilot_x, pilot_y] = [x, y].map(|all| columns_of(all, &chosen));
+        let pilot = Pilot { x: pilot_x.as_ref(), y: pilot_y.as_ref(), samples: &chosen };
+        if let Self::Cascade(fitter) = self {
+            let linear = Columns::new(&pilot, Kernel::Linear)?;
+            let first = fitter.fit_features(&linear, &sums(&linear, x, y)?)?;
+            let kernel = Kernel::Gaussian(fitter.width);
+            let gaussian = Columns::over(&pilot, kernel, first.model.selected_features())?;
+            return Ok(fitter.fit_samples(first, &gaussian, &sums(&gaussian, x, y)?)?);
+        }
+        let columns = Columns::new(&pilot, self.summed()?)?;
+        self.fit_sums(&columns, &sums(&columns, x, y)?)
+    }
+}
+
+fn sums(columns: &Columns, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Sums> {
+    let mut sums = Sums::new(columns);
+    for start in (0..x.ncols()).step_by(BATCH) {
+        let width = BATCH.min(x.ncols() - start);
+        sums.add(columns, x.subcols(start, width), y.subcols(start, width))?;
+    }
+    Ok(sums)
+}
+
+fn columns_of(all: MatRef<'_, f64>, chosen: &[usize]) -> Mat<f64> {
+    Mat::from_fn(all.nrows(), chosen.len(), |row, k| all[(row, chosen[k])])
+}
+
+/// The numbers of at most `most` of `all` things, evenly spaced.
+pub(crate) fn evenly_spaced(all: usize, most: usize) -> Vec<usize> {
+    let count = all.min(most);
+    (0..count).map(|k| k * all / count).collect()
+}

@@ -1,0 +1,70 @@
+//! How a training is spread over runs.
+
+use std::ops::Range;
+
+use crate::{Error, Result};
+
+/// Scenes that are drawn, described and summed together. Shards consist of whole blocks, so that
+/// the sums of one block are the same in any of them.
+pub(crate) const BLOCK: usize = 1024;
+
+/// One of several runs that share a training's scenes, block by block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    index: usize,
+    count: usize,
+}
+
+impl Shard {
+    /// The only run there is.
+    pub const WHOLE: Self = Self { index: 1, count: 1 };
+
+    /// The run of this number, from 1, of so many.
+    ///
+    /// # Errors
+    /// A number that is 0 or beyond the last.
+    pub fn new(index: usize, count: usize) -> Result<Self> {
+        if (1..=count).contains(&index) {
+            return Ok(Self { index, count });
+        }
+        Err(Error::Shard { index, count })
+    }
+
+    /// The blocks of this run, of so many scenes; none where there are more runs than blocks.
+    pub(crate) fn blocks(self, scenes: usize) -> Range<usize> {
+        let blocks = scenes.div_ceil(BLOCK);
+        let upto = |shards: usize| shards * blocks / self.count;
+        upto(self.index - 1)..upto(self.index)
+    }
+}
+
+/// The scenes of one block, of so many.
+pub(crate) fn scenes_of(block: usize, scenes: usize) -> Range<usize> {
+    block * BLOCK..((block + 1) * BLOCK).min(scenes)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, cases: 64, ..ProptestConfig::default() })]
+
+        #[test]
+        fn shards_hold_every_block_once_and_in_order(scenes in 0_usize..200_000, count in 1_usize..50) {
+            let shards = (1..=count).map(|index| Shard::new(index, count).unwrap());
+            let blocks: Vec<usize> = shards.flat_map(|shard| shard.blocks(scenes)).collect();
+            let held: Vec<usize> = blocks.iter().flat_map(|&block| scenes_of(block, scenes)).collect();
+            prop_assert_eq!(held, (0..scenes).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn there_is_no_shard_0_of_4_nor_5_of_4() {
+        for index in [0, 5] {
+            assert!(matches!(Shard::new(index, 4), Err(Error::Shard { .. })));
+        }
+    }
+}
