@@ -33,9 +33,12 @@ pub enum Penalty {
 /// approximation).
 ///
 /// It minimises ‖Y − WΦ‖² + λ tr(W K Wᵀ), with K the kernel between the centres, so λ means what
-/// it means to [`KernelRidge`](crate::KernelRidge), and with all samples as centres the two agree. It is solved for V = W L, where L Lᵀ = K + 10⁻⁶ I. The trace holds the mean squared
-/// generalised cross-validation error of each λ of the grid, in standardised units (infinite where
-/// a λ is too small to be solved for); the report's penalty is the λ taken.
+/// it means to [`KernelRidge`](crate::KernelRidge), and with all samples as centres the two agree.
+/// It is solved for V = W L, where L Lᵀ = K + 10⁻⁶ I.
+///
+/// The trace holds the mean squared generalised cross-validation error of each λ of the grid, in
+/// standardised units (infinite where a λ is too small to be solved for); the report's penalty is
+/// the λ taken.
 ///
 /// Far from the centres the standard deviation shrinks towards the noise's, as for the other
 /// models with weights.
@@ -62,6 +65,7 @@ impl Default for Nystrom {
 impl Nystrom {
     /// Fits X (K×I) to Y (m×I) with Gaussians on `centres` of the samples, evenly spaced.
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>, centres: usize) -> Result<Fit> {
+        self.grid()?;
         let problem = Problem::new(x, y)?;
         let samples = x.ncols();
         check::count(centres, samples)?;

@@ -22,8 +22,8 @@ pub struct Report {
     /// One per independent optimisation: one per target for Tipping, one per stage of a cascade,
     /// otherwise one.
     pub traces: Vec<Trace>,
-    /// The penalty in use, where the fitter chooses or adapts one: λ of kernel ridge, ν/m of
-    /// bridges (of the last stage).
+    /// The penalty in use, where the fitter chooses or adapts one: λ of kernel ridge and Nyström
+    /// regression, ν/m of bridges (of the last stage).
     pub penalty: Option<f64>,
 }
 

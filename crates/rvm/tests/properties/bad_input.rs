@@ -2,8 +2,8 @@
 
 use faer::Mat;
 use phalanx_rvm::{
-    Bridges, Cascade, Error, ForwardSelection, Kernel, KernelRidge, Lambda, Ridge, Standardiser,
-    Stop, Tipping, Width,
+    Bridges, Cascade, Error, ForwardSelection, Kernel, KernelRidge, Lambda, Nystrom, Penalty,
+    Ridge, Standardiser, Stop, Tipping, Width,
 };
 use proptest::prelude::*;
 
@@ -115,6 +115,8 @@ fn hyper_parameters_out_of_range_are_named() {
         assert_eq!(name(Tipping { noise_floor: bad, ..tipping }.fit(x, y)), "noise_floor");
         let lambda = Lambda::LeaveOneOut(vec![1.0, bad]);
         assert_eq!(name(KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y)), "lambda");
+        let penalty = Penalty::CrossValidated(vec![1.0, bad]);
+        assert_eq!(name(Nystrom { penalty, ..Nystrom::default() }.fit(x, y, 3)), "lambda");
         let kernel = Kernel::Gaussian(Width::Scatter(bad));
         assert_eq!(name(Bridges { kernel, ..bridges }.fit(x, y)), "c");
     }
@@ -130,6 +132,7 @@ fn hyper_parameters_out_of_range_are_named() {
         let count = Error::Count { asked, available: 12 };
         let stop = Stop::Count(asked);
         assert_eq!(Bridges { stop, ..bridges }.fit(x, y).unwrap_err(), count);
+        assert_eq!(Nystrom::default().fit(x, y, asked).unwrap_err(), count);
         assert_eq!(ForwardSelection { count: asked, ..forward }.fit(x, y).unwrap_err(), count);
     }
     let cascade = Cascade { features: Stop::Count(5), ..Cascade::default() };

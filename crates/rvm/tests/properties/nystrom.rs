@@ -122,6 +122,17 @@ proptest! {
 }
 
 #[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let (x, y) = smooth(6, 6, 3, 900);
+    let fits = [1, 2, 8].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| Nystrom::default().fit(x.as_ref(), y.as_ref(), 300)).unwrap()
+    });
+    assert_eq!(fits[0], fits[1]);
+    assert_eq!(fits[0], fits[2]);
+}
+
+#[test]
 fn inputs_that_do_not_vary_leave_the_mean() {
     let (_, y) = smooth(2, 3, 2, 30);
     let x = Mat::full(3, 30, 4.0);

@@ -2,8 +2,8 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Bridges, Cascade, Fit, ForwardSelection, Kernel, KernelRidge, Result, Ridge, Stop, Tipping,
-    Width,
+    Bridges, Cascade, Fit, ForwardSelection, Kernel, KernelRidge, Nystrom, Result, Ridge, Stop,
+    Tipping, Width,
 };
 use proptest::prelude::ProptestConfig;
 use rand_core::Rng;
@@ -14,7 +14,7 @@ pub(crate) type Fitter = fn(MatRef<'_, f64>, MatRef<'_, f64>) -> Result<Fit>;
 pub(crate) const GAUSSIAN: Kernel = Kernel::Gaussian(Width::Scatter(1.0));
 
 /// Every fitter, with the kernels that it knows.
-pub(crate) const FITTERS: [(&str, Fitter); 9] = [
+pub(crate) const FITTERS: [(&str, Fitter); 10] = [
     ("ridge, linear", |x, y| Ridge::default().fit(x, y)),
     ("ridge, Gaussian", |x, y| Ridge { kernel: GAUSSIAN, lambda: 0.1 }.fit(x, y)),
     ("bridges, linear", |x, y| Bridges { kernel: Kernel::Linear, ..Bridges::default() }.fit(x, y)),
@@ -22,6 +22,7 @@ pub(crate) const FITTERS: [(&str, Fitter); 9] = [
     ("Tipping, linear", |x, y| Tipping { kernel: Kernel::Linear, ..Tipping::default() }.fit(x, y)),
     ("Tipping, Gaussian", |x, y| Tipping::default().fit(x, y)),
     ("kernel ridge", |x, y| KernelRidge::default().fit(x, y)),
+    ("Nyström", |x, y| Nystrom::default().fit(x, y, x.ncols())),
     ("forward", |x, y| {
         ForwardSelection { kernel: GAUSSIAN, count: 1, ..ForwardSelection::default() }.fit(x, y)
     }),
