@@ -4,6 +4,7 @@ mod describe;
 mod error;
 mod estimator;
 mod model_file;
+mod outline;
 mod overlay;
 mod picture;
 mod progress;

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use crate::{Error, Estimator, OrientationRule, Result};
 
 const MARK: [u8; 8] = *b"PHALANX\0";
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 const HEADER: usize = 24;
 
 /// What the payload holds.
