@@ -205,13 +205,14 @@ impl Eyes {
         self.describer.silhouette_of_mask(raw, &mut self.silhouettes[0])?;
         let (width, height) = panel.dimensions();
         let window = CropWindow { x: 0, y: 0, width, height };
-        draw_overlay(panel, window, &self.silhouettes[0], None);
+        let rule = estimator.orientation();
+        draw_overlay(panel, window, &self.silhouettes[0], rule, None);
         let estimate = estimator.estimate_silhouettes(&self.silhouettes, &mut self.workspace)?;
         let rest = estimator.rig().volume.rest_frame();
         let camera = &estimator.rig().cameras[0];
         let drawn = draw_silhouette(camera, estimator.hand(), &estimate.pose, &rest)?;
         let drawn = Silhouette::from_mask(&drawn).context("the estimated hand")?;
-        draw_overlay(panel, window, &self.silhouettes[0], Some(&drawn));
+        draw_overlay(panel, window, &self.silhouettes[0], rule, Some(&drawn));
         Ok(())
     }
 }

@@ -121,7 +121,8 @@ fn overlay(
         let mut canvas = pictures[view].to_rgb8();
         let window = working_window(canvas.dimensions())?;
         let observed = &workspace.silhouettes()[view];
-        draw_overlay(&mut canvas, window, observed, estimated.as_ref().ok());
+        let rule = estimator.orientation();
+        draw_overlay(&mut canvas, window, observed, rule, estimated.as_ref().ok());
         panels.push(canvas);
     }
     Ok(side_by_side(&panels))

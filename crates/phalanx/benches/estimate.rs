@@ -53,7 +53,7 @@ impl TrainingSet {
     fn new() -> Self {
         let (rig, hand) = (rig(), HandShape::adult());
         let poses: Vec<Pose> = (0..SAMPLES).map(pose).collect();
-        let contexts = describe_poses(&rig, &hand, &poses, OrientationRule::HandAxis, &Silent)
+        let contexts = describe_poses(&rig, &hand, &poses, OrientationRule::default(), &Silent)
             .expect("all poses can be seen");
         let views = Vocabulary::default()
             .fit(&contexts, phalanx_shape_context::BINS)
@@ -65,7 +65,7 @@ impl TrainingSet {
         let x = descriptors(&self.views, &self.contexts).expect("contexts of these views");
         let model = regressor.fit(&x, &targets(&self.poses)).expect("a good training set").model;
         let (rig, hand) = (self.rig.clone(), self.hand.clone());
-        Estimator::from_parts(rig, hand, OrientationRule::HandAxis, self.views.clone(), model)
+        Estimator::from_parts(rig, hand, OrientationRule::default(), self.views.clone(), model)
             .expect("parts that fit")
     }
 }
@@ -111,7 +111,7 @@ fn training(c: &mut Criterion) {
     let poses: Vec<Pose> = (0..10).map(pose).collect();
     c.bench_function("draw and describe ten poses in three views", |b| {
         b.iter(|| {
-            describe_poses(&rig, &hand, black_box(&poses), OrientationRule::HandAxis, &Silent)
+            describe_poses(&rig, &hand, black_box(&poses), OrientationRule::default(), &Silent)
                 .expect("all poses can be seen")
         });
     });

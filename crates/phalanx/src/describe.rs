@@ -5,9 +5,10 @@ use phalanx_camera::{Camera, Intrinsics};
 use phalanx_segmentation::{
     Cleanup, CropWindow, MIN_SIDE, Silhouette, clean_into, downsample, downsample_mask,
 };
-use phalanx_shape_context::{Chain, Descriptors, Orientation, ShapeContexts};
+use phalanx_shape_context::{Descriptors, Orientation, ShapeContexts};
 use serde::{Deserialize, Serialize};
 
+use crate::outline::{chain, trace_outline};
 use crate::{Error, Picture, Result};
 
 /// The size at which pictures are described, width and height: the paper's 90 × 120 pixels.
@@ -27,21 +28,22 @@ pub enum OrientationRule {
     /// The contour's principal axis.
     PrincipalAxis,
     /// From the forearm's end to the hand's tip: the paper's rule.
-    #[default]
     HandAxis,
+    /// The forearm's axis, by its two sides. The contour's points are then taken at equal steps and
+    /// ahead of a cut squarely across the forearm, so that a rolled camera sees the same ones.
+    #[default]
+    ForearmAxis,
 }
 
 impl OrientationRule {
     fn of(self, silhouette: &Silhouette) -> Orientation {
         match self {
             Self::ImageAxes => Orientation::ImageAxes,
-            Self::Tangent if silhouette.contour.is_closed() => {
-                Orientation::Tangent { chain: Chain::Closed }
-            }
-            Self::Tangent => Orientation::Tangent { chain: Chain::Open },
+            Self::Tangent => Orientation::Tangent { chain: chain(silhouette) },
             Self::Centroid => Orientation::Centroid,
             Self::PrincipalAxis => Orientation::PrincipalAxis,
             Self::HandAxis => Orientation::HandAxis { forearm_end: silhouette.forearm.end },
+            Self::ForearmAxis => Orientation::ForearmAxis { sides: silhouette.forearm.sides },
         }
     }
 }
@@ -64,6 +66,7 @@ pub fn working_camera(camera: &Camera) -> Result<Camera> {
 pub struct Describer {
     cleaning: phalanx_segmentation::Workspace,
     cleaned: GrayImage,
+    outline: Vec<[f64; 2]>,
     contexts: ShapeContexts,
 }
 
@@ -108,7 +111,8 @@ impl Describer {
         silhouette.extract_into(&self.cleaned, &mut self.cleaning)
     }
 
-    /// The shape contexts of a silhouette's contour points.
+    /// The shape contexts of a silhouette's contour points: its pixels, or what
+    /// [`OrientationRule::ForearmAxis`] takes instead.
     ///
     /// # Errors
     /// A contour that is too short, or whose orientation is undefined.
@@ -117,6 +121,12 @@ impl Describer {
         silhouette: &Silhouette,
         rule: OrientationRule,
     ) -> Result<Descriptors<'_>, phalanx_shape_context::Error> {
-        self.contexts.compute(&silhouette.contour.points, rule.of(silhouette))
+        let points = if rule == OrientationRule::ForearmAxis {
+            trace_outline(silhouette, &mut self.outline)?;
+            &self.outline
+        } else {
+            &silhouette.contour.points
+        };
+        self.contexts.compute(points, rule.of(silhouette))
     }
 }

@@ -7,6 +7,7 @@ mod error;
 mod estimator;
 mod histograms;
 mod model_file;
+mod outline;
 mod overlay;
 mod part;
 mod picture;

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::container::Container;
 use crate::{Estimator, OrientationRule, Result};
 
-const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 1 };
+const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 2 };
 
 /// What the payload holds.
 #[derive(Serialize, Deserialize)]

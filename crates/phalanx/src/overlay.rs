@@ -2,16 +2,18 @@
 
 use image::{Rgb, RgbImage};
 use phalanx_segmentation::{CropWindow, Silhouette};
-use phalanx_shape_context::hand_axis;
+use phalanx_shape_context::{forearm_axis, hand_axis};
 
-use crate::WORKING_SIZE;
+use crate::outline::trace_outline;
+use crate::{OrientationRule, WORKING_SIZE};
 
 const OBSERVED: Rgb<u8> = Rgb([40, 220, 90]);
 const AXIS: Rgb<u8> = Rgb([255, 210, 0]);
 const ESTIMATED: Rgb<u8> = Rgb([230, 40, 160]);
 
-/// Draws the contour of the observed silhouette (green), its hand axis (yellow) and the contour
-/// of the estimated hand (magenta) over a picture.
+/// Draws the contour of the observed silhouette (green), the axis to which `rule` turns it
+/// (yellow; rules without one for all points draw none) and the contour of the estimated hand
+/// (magenta) over a picture.
 ///
 /// `window` is the part of `canvas` that the observed silhouette shows. Where the hand is in
 /// space is not estimated from descriptors, which are blind to shift, scale and roll: the
@@ -21,6 +23,7 @@ pub fn draw_overlay(
     canvas: &mut RgbImage,
     window: CropWindow,
     observed: &Silhouette,
+    rule: OrientationRule,
     estimated: Option<&Silhouette>,
 ) {
     let scale = f64::from(window.width) / f64::from(observed.mask.width());
@@ -30,14 +33,32 @@ pub fn draw_overlay(
     for piece in observed.contour.pieces() {
         pen.path(piece, to_canvas, OBSERVED);
     }
-    if let Ok(axis) = hand_axis(&observed.contour.points, observed.forearm.end) {
-        pen.path(&[axis.forearm_end, axis.tip], to_canvas, AXIS);
+    if let Some(axis) = axis(observed, rule) {
+        pen.path(&axis, to_canvas, AXIS);
     }
     if let Some(estimated) = estimated {
         let onto = Similarity::between(estimated, observed);
         for piece in estimated.contour.pieces() {
             pen.path(piece, |point| to_canvas(onto.apply(point)), ESTIMATED);
         }
+    }
+}
+
+/// The two ends of the axis that turns all points, where the rule has one.
+fn axis(observed: &Silhouette, rule: OrientationRule) -> Option<[[f64; 2]; 2]> {
+    match rule {
+        OrientationRule::HandAxis => {
+            let axis = hand_axis(&observed.contour.points, observed.forearm.end).ok()?;
+            Some([axis.forearm_end, axis.tip])
+        }
+        OrientationRule::ForearmAxis => {
+            let mut points = Vec::new();
+            trace_outline(observed, &mut points).ok()?;
+            let axis = forearm_axis(&points, observed.forearm.sides).ok()?;
+            let length = points.iter().map(|&point| axis.ahead(point)).fold(0.0, f64::max);
+            Some([axis.start, [0, 1].map(|k| axis.start[k] + length * axis.direction[k])])
+        }
+        _ => None,
     }
 }
 

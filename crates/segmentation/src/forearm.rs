@@ -4,7 +4,7 @@ use image::GrayImage;
 
 use crate::contour::Contour;
 use crate::error::Result;
-use crate::stump::find_stump;
+use crate::stump::{Stump, find_stump};
 
 /// What the end of the forearm was recognised by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,6 +20,9 @@ pub enum Evidence {
 pub struct Forearm {
     /// `[x, y]` of the middle of the end, in pixels.
     pub end: [f64; 2],
+    /// `[x, y]` of where its two sides begin, in pixels: the ends of the crossing, or either side
+    /// of a stump's end.
+    pub sides: [[f64; 2]; 2],
     /// What it was recognised by.
     pub evidence: Evidence,
     /// How often the silhouette crosses the image border: 1 is as it should be, 0 goes with
@@ -36,11 +39,10 @@ impl Forearm {
     pub fn find(mask: &GrayImage, contour: &Contour) -> Result<Self> {
         match border_crossing(mask) {
             Some(forearm) => Ok(forearm),
-            None => Ok(Forearm {
-                end: find_stump(mask, contour)?,
-                evidence: Evidence::Stump,
-                crossings: 0,
-            }),
+            None => {
+                let Stump { end, sides } = find_stump(mask, contour)?;
+                Ok(Forearm { end, sides, evidence: Evidence::Stump, crossings: 0 })
+            }
         }
     }
 }
@@ -80,5 +82,6 @@ fn border_crossing(mask: &GrayImage) -> Option<Forearm> {
     let before = centre(usize::midpoint(longest.start, last))?;
     let after = centre((longest.start + last).div_ceil(2))?;
     let end = [f64::midpoint(before[0], after[0]), f64::midpoint(before[1], after[1])];
-    Some(Forearm { end, evidence: Evidence::Border, crossings })
+    let sides = [centre(longest.start)?, centre(last)?];
+    Some(Forearm { end, sides, evidence: Evidence::Border, crossings })
 }

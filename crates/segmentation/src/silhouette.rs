@@ -24,7 +24,8 @@ pub struct Silhouette {
 impl Default for Silhouette {
     /// An empty silhouette, for [`Silhouette::extract_into`] to fill.
     fn default() -> Self {
-        let forearm = Forearm { end: [0.0; 2], evidence: Evidence::Stump, crossings: 0 };
+        let (end, sides) = ([0.0; 2], [[0.0; 2]; 2]);
+        let forearm = Forearm { end, sides, evidence: Evidence::Stump, crossings: 0 };
         Self { mask: GrayImage::default(), contour: Contour::default(), forearm }
     }
 }

@@ -27,6 +27,8 @@ struct End {
     contour_points: usize,
     tip_sum: [f64; 2],
     tip_count: usize,
+    /// How far it reaches along the axis.
+    depth: f64,
 }
 
 impl End {
@@ -34,11 +36,23 @@ impl End {
     fn raggedness(&self) -> f64 {
         (self.contour_points as f64).powi(2) / self.area as f64
     }
+
+    fn width(&self) -> f64 {
+        self.area as f64 / self.depth
+    }
 }
 
-/// The middle of the end that is a smooth stump rather than fingers. Of two smooth ends, such as
+/// The end of a forearm that is in the picture, in pixels.
+pub(crate) struct Stump {
+    /// Its middle.
+    pub(crate) end: [f64; 2],
+    /// Either side of the middle, at the forearm's mean width.
+    pub(crate) sides: [[f64; 2]; 2],
+}
+
+/// The end that is a smooth stump rather than fingers. Of two smooth ends, such as
 /// those of a fist, the forearm is the narrower one.
-pub(crate) fn find_stump(mask: &GrayImage, contour: &Contour) -> Result<[f64; 2]> {
+pub(crate) fn find_stump(mask: &GrayImage, contour: &Contour) -> Result<Stump> {
     let axis = PrincipalAxis::of(mask);
     let ends = axis.ends(mask, contour);
     let raggedness = ends.map(|end| end.raggedness());
@@ -52,8 +66,10 @@ pub(crate) fn find_stump(mask: &GrayImage, contour: &Contour) -> Result<[f64; 2]
     if axis.elongation < LEAST_ELONGATION || ratio < LEAST_RATIO {
         return Err(Error::NoForearm { elongation: axis.elongation, raggedness, areas });
     }
-    let End { tip_sum, tip_count, .. } = ends[usize::from(measures[1] < measures[0])];
-    Ok(tip_sum.map(|sum| sum / tip_count as f64))
+    let forearm = ends[usize::from(measures[1] < measures[0])];
+    let end = forearm.tip_sum.map(|sum| sum / forearm.tip_count as f64);
+    let [dx, dy] = axis.direction.map(|c| c * forearm.width() / 2.0);
+    Ok(Stump { end, sides: [[end[0] - dy, end[1] + dx], [end[0] + dy, end[1] - dx]] })
 }
 
 struct PrincipalAxis {
@@ -105,7 +121,7 @@ impl PrincipalAxis {
             let along = self.along(pixel);
             [along - low, high - along]
         };
-        let mut ends = [End::default(); 2];
+        let mut ends = [End { depth: END * length, ..End::default() }; 2];
         for pixel in hand_pixels(mask) {
             for (end, depth) in ends.iter_mut().zip(depths(pixel)) {
                 end.area += usize::from(depth <= END * length);

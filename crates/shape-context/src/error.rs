@@ -29,7 +29,8 @@ pub enum Error {
         /// Its row.
         y: f64,
     },
-    /// The forearm's end is not a number or lies outside ± [`MAX_COORDINATE`].
+    /// The forearm's end, or where one of its sides begins, is not a number or lies outside
+    /// ± [`MAX_COORDINATE`].
     #[error("the forearm's end is ({x}, {y}): not finite, or beyond ±{MAX_COORDINATE}")]
     BadForearmEnd {
         /// Its column.
@@ -54,6 +55,15 @@ pub enum Error {
     /// Every contour point lies on the forearm's end: there is no hand axis.
     #[error("every contour point lies on the forearm's end")]
     NoHandAxis,
+    /// The forearm has no two sides: they begin in one place, or no contour point lies along one.
+    #[error("no contour points along both sides of the forearm")]
+    NoForearmAxis,
+    /// A step along the contour that is not positive.
+    #[error("a step of {step} along the contour is not positive")]
+    BadStep {
+        /// The step.
+        step: f64,
+    },
     /// The contour spreads alike in all directions (a circle, a square): no principal axis.
     #[error("the contour spreads alike in all directions and has no principal axis")]
     NoPrincipalAxis,

@@ -1,5 +1,5 @@
 use crate::{
-    Error, Result, hand_axis,
+    Error, Result, forearm_axis, hand_axis,
     points::{centroid, norm, perpendicular, sub, unit},
     principal::principal_axis,
     tangent::tangents,
@@ -41,6 +41,12 @@ pub enum Orientation {
         /// The forearm's end, in pixels.
         forearm_end: [f64; 2],
     },
+    /// The forearm's axis, for all points: along its two sides, towards the hand. No finger moves
+    /// it. See [`forearm_axis`].
+    ForearmAxis {
+        /// Where the forearm's sides begin, in pixels.
+        sides: [[f64; 2]; 2],
+    },
 }
 
 /// Unit vectors of the direction 0°.
@@ -63,6 +69,9 @@ impl Axes {
             Orientation::PrincipalAxis => Self::Shared(principal_axis(points, mean_distance)?),
             Orientation::HandAxis { forearm_end } => {
                 Self::Shared(hand_axis(points, forearm_end)?.direction())
+            }
+            Orientation::ForearmAxis { sides } => {
+                Self::Shared(forearm_axis(points, sides)?.direction)
             }
             Orientation::Tangent { chain } => {
                 let mut axes = self.take_buffer();

@@ -65,13 +65,13 @@ fn learn(rig: &Rig, orientation: OrientationRule) -> Estimator {
     training(orientation).run(rig, &HandShape::adult(), &poses(), &Silent).unwrap()
 }
 
-/// Three views by the hand axis.
+/// Three views by the forearm's axis.
 pub(crate) static ESTIMATOR: LazyLock<Estimator> =
-    LazyLock::new(|| learn(&rig(), OrientationRule::HandAxis));
+    LazyLock::new(|| learn(&rig(), OrientationRule::default()));
 
-/// One view by the hand axis.
+/// One view by the forearm's axis.
 pub(crate) static FROM_TOP: LazyLock<Estimator> =
-    LazyLock::new(|| learn(&top(), OrientationRule::HandAxis));
+    LazyLock::new(|| learn(&top(), OrientationRule::default()));
 
 /// One view by the image's axes.
 pub(crate) static UNTURNED: LazyLock<Estimator> =

@@ -10,7 +10,7 @@ use phalanx_rvm::{Bridges, Cascade, ForwardSelection, Kernel, Ridge, Stop, Tippi
 use crate::desk::{ESTIMATOR, difference_deg, estimate, masks, poses, rig, top, training, unseen};
 
 fn train(rig: &Rig, poses: &[Pose]) -> phalanx::Result<phalanx::Estimator> {
-    training(OrientationRule::HandAxis).run(rig, &HandShape::adult(), poses, &Silent)
+    training(OrientationRule::default()).run(rig, &HandShape::adult(), poses, &Silent)
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn every_regressor_learns() {
     ];
     for regressor in regressors {
         let name = format!("{regressor:?}");
-        let training = Training { regressor, ..training(OrientationRule::HandAxis) };
+        let training = Training { regressor, ..training(OrientationRule::default()) };
         let estimator = training.run(&top(), &HandShape::adult(), &poses(), &Silent).unwrap();
         let loaded = phalanx::Estimator::from_bytes(&estimator.to_bytes().unwrap()).unwrap();
         assert_eq!(loaded, estimator);
@@ -55,9 +55,12 @@ fn every_regressor_learns() {
 
 #[test]
 fn every_orientation_learns() {
-    for rule in
-        [OrientationRule::Tangent, OrientationRule::Centroid, OrientationRule::PrincipalAxis]
-    {
+    for rule in [
+        OrientationRule::Tangent,
+        OrientationRule::Centroid,
+        OrientationRule::PrincipalAxis,
+        OrientationRule::HandAxis,
+    ] {
         let estimator = training(rule).run(&top(), &HandShape::adult(), &poses(), &Silent).unwrap();
         assert_eq!(estimator.orientation(), rule);
         let pose = unseen()[3];
@@ -71,7 +74,7 @@ fn every_orientation_learns() {
 fn a_left_hand_in_a_mirrored_rig_is_learnt_alike() {
     // Seen from straight above, a left hand is the mirror image of a right one.
     let left = HandShape { side: Side::Left, ..HandShape::adult() };
-    let training = training(OrientationRule::HandAxis);
+    let training = training(OrientationRule::default());
     let estimator = training.run(&top(), &left, &poses(), &Silent).unwrap();
     let pose = unseen()[1];
     let mirrored: Vec<_> =
@@ -97,7 +100,7 @@ impl Progress for Diary {
 #[test]
 fn progress_tells_every_step() {
     let diary = Diary::default();
-    let training = training(OrientationRule::HandAxis);
+    let training = training(OrientationRule::default());
     training.run(&top(), &HandShape::adult(), &poses()[..20], &diary).unwrap();
     let stages = diary.0.into_inner().unwrap();
     assert_eq!(stages[0], ("render and describe".to_owned(), 20, 20));
@@ -132,7 +135,7 @@ fn rigs_hands_and_vocabularies_are_checked() {
     assert!(matches!(train(&twins, &poses()), Err(Error::Rig(_))));
     let mut hand = HandShape::adult();
     hand.index.lengths_mm[0] = f64::NAN;
-    let rule = OrientationRule::HandAxis;
+    let rule = OrientationRule::default();
     let error = training(rule).run(&rig(), &hand, &poses(), &Silent).unwrap_err();
     assert!(error.to_string().contains("index.lengths_mm[0]"), "{error}");
 }

@@ -1,7 +1,9 @@
 //! Pictures and cameras are brought to the working size alike, and overlays go back.
 
 use image::{Rgb, RgbImage};
-use phalanx::{WORKING_SIZE, draw_overlay, draw_silhouette, working_camera, working_window};
+use phalanx::{
+    OrientationRule, WORKING_SIZE, draw_overlay, draw_silhouette, working_camera, working_window,
+};
 use phalanx_camera::Intrinsics;
 use phalanx_hand::HandShape;
 use phalanx_render::Renderer;
@@ -46,24 +48,32 @@ fn the_working_camera_sees_the_working_window() {
 #[test]
 fn an_estimate_that_is_the_observation_covers_it() {
     const OBSERVED: Rgb<u8> = Rgb([40, 220, 90]);
+    const AXIS: Rgb<u8> = Rgb([255, 210, 0]);
     const ESTIMATED: Rgb<u8> = Rgb([230, 40, 160]);
     let observed = Silhouette::from_mask(&masks(&top(), &unseen()[1])[0]).unwrap();
     let window = working_window((480, 360)).unwrap();
-    let draw = |estimated: Option<&Silhouette>| {
+    let draw = |rule, estimated: Option<&Silhouette>| {
         let mut canvas = RgbImage::new(480, 360);
-        draw_overlay(&mut canvas, window, &observed, estimated);
+        draw_overlay(&mut canvas, window, &observed, rule, estimated);
         let count = |colour| canvas.pixels().filter(|pixel| **pixel == colour).count();
-        (count(OBSERVED), count(ESTIMATED))
+        [OBSERVED, AXIS, ESTIMATED].map(count)
     };
-    let (alone, none) = draw(None);
-    assert!(alone > 1000 && none == 0, "{alone} {none}");
-    let (left, covered) = draw(Some(&observed));
-    assert_eq!(left, 0);
-    assert!(covered >= alone, "{covered} {alone}");
+    for (rule, has_axis) in [
+        (OrientationRule::ForearmAxis, true),
+        (OrientationRule::HandAxis, true),
+        (OrientationRule::Tangent, false),
+    ] {
+        let [alone, axis, none] = draw(rule, None);
+        assert!(alone > 1000 && none == 0, "{alone} {none}");
+        assert_eq!(axis > 300, has_axis, "{rule:?}: {axis}");
+        let [left, _, covered] = draw(rule, Some(&observed));
+        assert_eq!(left, 0);
+        assert!(covered >= alone, "{covered} {alone}");
+    }
     // Nothing was seen, there is nowhere to draw: nothing happens.
-    draw_overlay(&mut RgbImage::new(0, 0), window, &observed, Some(&Silhouette::default()));
-    let nothing = Silhouette::default();
+    let (mut none, nothing) = (RgbImage::new(0, 0), Silhouette::default());
+    draw_overlay(&mut none, window, &observed, OrientationRule::HandAxis, Some(&nothing));
     let mut canvas = RgbImage::new(48, 36);
-    draw_overlay(&mut canvas, window, &nothing, Some(&observed));
+    draw_overlay(&mut canvas, window, &nothing, OrientationRule::ForearmAxis, Some(&observed));
     assert_eq!(canvas, RgbImage::new(48, 36));
 }
