@@ -17,6 +17,8 @@ pub(crate) enum Orientation {
     PrincipalAxis,
     /// From the forearm's end to the hand's tip: the paper's rule.
     HandAxis,
+    /// The forearm's axis, by its two sides.
+    ForearmAxis,
 }
 
 impl Orientation {
@@ -27,6 +29,7 @@ impl Orientation {
             Self::Centroid => OrientationRule::Centroid,
             Self::PrincipalAxis => OrientationRule::PrincipalAxis,
             Self::HandAxis => OrientationRule::HandAxis,
+            Self::ForearmAxis => OrientationRule::ForearmAxis,
         }
     }
 }
