@@ -103,12 +103,26 @@ impl SceneDescriber {
     /// # Errors
     /// Another number of views than cameras, or one that cannot be seen or described.
     pub fn contexts(&mut self, scene: &Scene) -> Result<PoseContexts> {
+        self.see(scene)?;
+        self.views.iter_mut().map(|view| view.contexts(self.rule)).collect()
+    }
+
+    /// The scene's silhouettes in every camera, as they are described: damaged, and cleaned again.
+    ///
+    /// # Errors
+    /// Another number of views than cameras, or one that cannot be seen.
+    pub fn silhouettes(&mut self, scene: &Scene) -> Result<impl Iterator<Item = &Silhouette>> {
+        self.see(scene)?;
+        Ok(self.views.iter().map(|view| &view.silhouette))
+    }
+
+    fn see(&mut self, scene: &Scene) -> Result<()> {
         let (found, expected) = (scene.views.len(), self.views.len());
         if found != expected {
             return Err(Error::Mismatch { part: "views of the scene", found, expected });
         }
-        let views = self.views.iter_mut().zip(&scene.views);
-        views.map(|(describer, view)| describer.contexts(scene, view, self.rule)).collect()
+        let mut views = self.views.iter_mut().zip(&scene.views);
+        views.try_for_each(|(describer, view)| describer.see(scene, view))
     }
 }
 
@@ -124,7 +138,7 @@ impl ViewDescriber {
         })
     }
 
-    fn contexts(&mut self, scene: &Scene, view: &View, rule: OrientationRule) -> Result<Vec<f32>> {
+    fn see(&mut self, scene: &Scene, view: &View) -> Result<()> {
         let camera = || self.name.clone();
         let solids = scene.hand.pose(&scene.pose, &view.rest).primitives;
         self.renderer
@@ -135,10 +149,13 @@ impl ViewDescriber {
         }
         self.describer
             .silhouette(Picture::Mask(&self.drawn), &mut self.silhouette)
-            .map_err(|reason| Error::Silhouette { camera: camera(), reason })?;
+            .map_err(|reason| Error::Silhouette { camera: camera(), reason })
+    }
+
+    fn contexts(&mut self, rule: OrientationRule) -> Result<Vec<f32>> {
         self.describer
             .contexts(&self.silhouette, rule)
             .map(|contexts| contexts.values().to_vec())
-            .map_err(|reason| Error::ShapeContext { camera: camera(), reason })
+            .map_err(|reason| Error::ShapeContext { camera: self.name.clone(), reason })
     }
 }

@@ -1,10 +1,12 @@
 //! A small estimator: trained, stored, asked.
 
+mod damage;
 mod desk;
 mod estimating;
 mod invariance;
 mod model_file;
 mod photographs;
 mod refusals;
+mod shards;
 mod training;
 mod working_size;

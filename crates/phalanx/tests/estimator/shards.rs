@@ -1,0 +1,121 @@
+//! Training in shards: the same bytes however it is cut, and clear refusals.
+
+use phalanx::{
+    Damage, Error, OrientationRule, Part, Regressor, Scene, Scenes, Shard, Silent, Training,
+};
+use phalanx_camera::Rig;
+use phalanx_hand::{HandShape, coupled_pose};
+use phalanx_rvm::{Bridges, Cascade, Kernel, KernelRidge, Nystrom, Stop};
+
+use crate::desk::{self, top};
+
+/// Independent poses before one camera.
+struct Random {
+    rig: Rig,
+    hand: HandShape,
+    count: usize,
+}
+
+impl Random {
+    fn new(count: usize) -> Self {
+        Self { rig: top(), hand: HandShape::adult(), count }
+    }
+
+    fn shard(&self, regressor: &Regressor, index: usize, count: usize) -> Result<Part, Error> {
+        let quick = desk::training(OrientationRule::default());
+        let training = Training { regressor: regressor.clone(), ..quick };
+        training.shard(&self.rig, &self.hand, self, Shard::new(index, count)?, &Silent)
+    }
+}
+
+impl Scenes for Random {
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn scene(&self, number: usize) -> Scene {
+        let mut random = phalanx::ItemRandom::new(1, number as u64);
+        let pose = coupled_pose(|| random.uniform());
+        Damage::NONE.scene(&self.rig, &self.hand, pose, 2, number)
+    }
+}
+
+fn linear() -> Regressor {
+    Regressor::Bridges(Bridges {
+        kernel: Kernel::Linear,
+        stop: Stop::Count(20),
+        ..Bridges::default()
+    })
+}
+
+#[test]
+fn merged_shards_are_the_bytes_of_one_run_at_any_number_of_threads() {
+    let scenes = Random::new(1100);
+    let run = |threads: usize, shards: &[(usize, usize)]| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let parts = shards.iter().map(|&(index, count)| {
+                let part = scenes.shard(&linear(), index, count).unwrap();
+                Part::from_bytes(&part.to_bytes().unwrap()).unwrap()
+            });
+            let merged = parts.reduce(|mut a, b| {
+                a.merge(b).unwrap();
+                a
+            });
+            merged.unwrap().finish().unwrap().to_bytes().unwrap()
+        })
+    };
+    let whole = run(1, &[(1, 1)]);
+    assert_eq!(run(2, &[(2, 2), (1, 2)]), whole);
+    // More shards than blocks: some are empty.
+    assert_eq!(run(8, &[(3, 3), (1, 3), (2, 3)]), whole);
+}
+
+#[test]
+fn a_missing_or_repeated_part_is_named() {
+    let scenes = Random::new(1100);
+    let first = scenes.shard(&linear(), 1, 2).unwrap();
+    let error = first.clone().finish().unwrap_err();
+    assert_eq!(error.to_string(), "a part is missing: none holds samples 1024 to 1099");
+    let error = first.clone().merge(first).unwrap_err();
+    assert_eq!(error.to_string(), "two parts both hold samples 0 to 1023");
+}
+
+#[test]
+fn parts_of_other_trainings_are_refused() {
+    let part =
+        |count: usize, regressor: &Regressor| Random::new(count).shard(regressor, 1, 2).unwrap();
+    let mut one = part(200, &linear());
+    let error = one.merge(part(201, &linear())).unwrap_err();
+    assert!(error.to_string().ends_with("their numbers of scenes"), "{error}");
+    let gaussian = Regressor::Nystrom(Nystrom::default());
+    let error = one.merge(part(200, &gaussian)).unwrap_err();
+    assert!(error.to_string().ends_with("their regressors"), "{error}");
+}
+
+#[test]
+fn regressors_that_need_all_samples_at_once_are_refused_before_any_work() {
+    for regressor in
+        [Regressor::Cascade(Cascade::default()), Regressor::KernelRidge(KernelRidge::default())]
+    {
+        let error = Random::new(usize::MAX / 2).shard(&regressor, 1, 1).unwrap_err();
+        assert!(matches!(error, Error::NotInShards { .. }), "{error}");
+    }
+}
+
+#[test]
+fn a_damaged_part_is_refused() {
+    let bytes = Random::new(120).shard(&linear(), 1, 1).unwrap().to_bytes().unwrap();
+    assert!(Part::from_bytes(&bytes).is_ok());
+    for length in [0, 7, 23, bytes.len() - 1] {
+        assert!(Part::from_bytes(&bytes[..length]).is_err(), "{length} bytes");
+    }
+    for byte in (0..bytes.len()).step_by(997) {
+        let mut flipped = bytes.clone();
+        flipped[byte] ^= 0x10;
+        assert!(Part::from_bytes(&flipped).is_err(), "byte {byte}");
+    }
+    let model = b"PHALANX\0and so on";
+    let error = Part::from_bytes(model).unwrap_err();
+    assert!(error.to_string().starts_with("not a phalanx training part"), "{error}");
+}
