@@ -93,6 +93,8 @@ proptest! {
                 Orientation::PrincipalAxis,
                 Orientation::HandAxis { forearm_end: end },
                 Orientation::HandAxis { forearm_end: [1.0, 1.0] },
+                Orientation::ForearmAxis { sides: [end, [1.0, 1.0]] },
+                Orientation::ForearmAxis { sides: [[0.0, 2.0], [2.0, 2.0]] },
             ] {
                 if let Ok(found) = contexts.compute(&points, orientation) {
                     prop_assert_eq!(found.rows().len(), points.len());
