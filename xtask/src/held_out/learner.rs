@@ -3,7 +3,8 @@
 use anyhow::{Context, Result};
 use faer::Mat;
 use phalanx::{
-    OrientationRule, Progress, Scenes, ViewCodebooks, describe_each, describe_with, targets,
+    OrientationRule, PoseContexts, Progress, Scenes, ViewCodebooks, describe_each, describe_with,
+    targets,
 };
 use phalanx_hand::Pose;
 use phalanx_multiview::Vocabulary;
@@ -36,45 +37,59 @@ pub(crate) fn learn(
     methods: &[Method],
     progress: &dyn Progress,
 ) -> Result<Vec<Learner>> {
-    let codebooks = codebooks(set, views, rule, progress)?;
+    let contexts = pilot_contexts(set, rule, progress)?;
+    let codebooks = views.iter().map(|views| codebooks(&contexts, views, &Vocabulary::default()));
+    let codebooks = codebooks.collect::<Result<Vec<_>>>()?;
+    drop(contexts);
     let samples = describe(set, rule, &codebooks, progress)?.samples;
-    progress.begin(&format!("fit {}", set.name), views.len() * methods.len());
-    let learner = |(codebooks, samples): (ViewCodebooks, Samples)| -> Result<Learner> {
-        let counts = PaperCounts::paper(codebooks.views.len(), set.name);
+    let fitted =
+        |(codebooks, samples)| Learner::fit(set.name, codebooks, &samples, methods, progress);
+    codebooks.into_iter().zip(samples).map(fitted).collect()
+}
+
+impl Learner {
+    /// Fits every method to samples that the codebooks described.
+    pub(crate) fn fit(
+        train: &'static str,
+        codebooks: ViewCodebooks,
+        samples: &Samples,
+        methods: &[Method],
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let counts = PaperCounts::paper(codebooks.views.len(), train).at_most(samples.x.ncols());
+        progress.begin(&format!("fit {train}"), methods.len());
         let fit = |&method: &Method| -> Result<(Method, Predictor)> {
-            let predictor = method.fit(&samples, counts);
+            let predictor = method.fit(samples, counts);
             progress.step();
             Ok((method, predictor.with_context(|| method.name())?))
         };
         let predictors = methods.par_iter().map(fit).collect::<Result<_>>()?;
-        let mean = Method::Mean.fit(&samples, counts)?;
-        let train_samples = samples.x.ncols();
-        Ok(Learner { train: set.name, train_samples, codebooks, predictors, mean })
-    };
-    codebooks.into_iter().zip(samples).map(learner).collect()
+        let mean = Method::Mean.fit(samples, counts)?;
+        Ok(Self { train, train_samples: samples.x.ncols(), codebooks, predictors, mean })
+    }
 }
 
-/// The paper's codebooks for each choice of cameras, from a part of the set.
-fn codebooks(
+/// Shape contexts of a part of a set, in every camera.
+pub(crate) fn pilot_contexts(
     set: &Set<'_>,
-    views: &[Vec<usize>],
     rule: OrientationRule,
     progress: &dyn Progress,
-) -> Result<Vec<ViewCodebooks>> {
-    let pilot = EvenlySpaced::new(set, PILOT);
-    let described = describe_each(set.rig, &pilot, rule, progress)?;
-    let contexts: Vec<_> = described.into_iter().filter_map(Result::ok).collect();
-    progress.begin("cluster shape contexts", views.len());
-    let cluster = |views: &Vec<usize>| {
-        let seen: Vec<Vec<&[f32]>> = contexts
-            .iter()
-            .map(|sample| views.iter().map(|&v| sample[v].as_slice()).collect())
-            .collect();
-        let codebooks = Vocabulary::default().fit(&seen, BINS)?;
-        progress.step();
-        Ok(ViewCodebooks { views: views.clone(), codebooks })
-    };
-    views.iter().map(cluster).collect()
+) -> Result<Vec<PoseContexts>> {
+    let described = describe_each(set.rig, &EvenlySpaced::new(set, PILOT), rule, progress)?;
+    Ok(described.into_iter().filter_map(Result::ok).collect())
+}
+
+/// Codebooks of some of the cameras.
+pub(crate) fn codebooks(
+    contexts: &[PoseContexts],
+    views: &[usize],
+    vocabulary: &Vocabulary,
+) -> Result<ViewCodebooks> {
+    let seen: Vec<Vec<&[f32]>> = contexts
+        .iter()
+        .map(|sample| views.iter().map(|&v| sample[v].as_slice()).collect())
+        .collect();
+    Ok(ViewCodebooks { views: views.to_vec(), codebooks: vocabulary.fit(&seen, BINS)? })
 }
 
 /// Some scenes of others.

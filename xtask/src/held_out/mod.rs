@@ -1,5 +1,6 @@
 //! `cargo xtask eval-held-out`: tests on what was never seen, which the paper did not take.
 
+mod curves;
 mod errors;
 mod learner;
 mod masks;
@@ -22,6 +23,7 @@ use crate::orientation::Orientation;
 use crate::sets::{self, Augment, Set, Test};
 use crate::table1::single_view;
 use crate::{files, progress};
+use curves::Point;
 use errors::Truth;
 use learner::{Learner, describe, learn};
 use masks::Masks;
@@ -67,6 +69,10 @@ pub(crate) struct Arguments {
     /// The hand to learn from, TOML; the mean adult of fixtures/ by default.
     #[arg(long, value_name = "FILE.toml")]
     hand: Option<PathBuf>,
+    /// Draw curves instead: error against training samples (500 to 50,000) and against codebook
+    /// centres. This takes many minutes.
+    #[arg(long)]
+    curves: bool,
     /// Add microseconds per estimate, from three silhouettes to a pose, on one thread.
     #[arg(long)]
     timing: bool,
@@ -84,8 +90,11 @@ enum TrainingSet {
 }
 
 #[derive(Serialize)]
-struct Table {
+struct Results {
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     rows: Vec<Row>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    curves: Vec<Point>,
 }
 
 /// The rig and the hand that are learnt for.
@@ -101,36 +110,44 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         hand: files::hand(arguments.hand.as_deref())?,
         rule: arguments.orientation.map_or_else(OrientationRule::default, Orientation::rule),
     };
-    let motion = arguments.poses.as_deref().map(files::poses).transpose()?;
-    let motion = motion.map_or_else(Vec::new, |table| table.poses);
-    let masks =
-        arguments.masks.as_deref().map(|folder| Masks::read(folder, &ground)).transpose()?;
     let bar = progress::Bar::new();
-    let mut learners = Vec::new();
-    for set in training_sets(arguments, &ground)? {
-        learners.extend(learn(&set, &views(&ground.rig), ground.rule, &methods(arguments), &bar)?);
-    }
-    let mut rows = Vec::new();
-    for test in tests(arguments)? {
-        let set = test.set(&ground.rig, &ground.hand, &motion);
-        rows.extend(test_on(&set, &learners, &ground, &bar)?);
-    }
-    if let Some(masks) = &masks {
-        rows.extend(masks.test(&learners, &ground)?);
-    }
-    if arguments.timing {
-        timing::add(&mut rows, &learners, &ground)?;
-    }
+    let (text, results) = if arguments.curves {
+        let curves = curves::points(&ground, &bar)?;
+        (curves::tables(&curves), Results { rows: Vec::new(), curves })
+    } else {
+        let rows = rows(arguments, &ground, &bar)?;
+        (print::tables(&rows), Results { rows, curves: Vec::new() })
+    };
     drop(bar);
-    finish(arguments, rows)
-}
-
-fn finish(arguments: &Arguments, rows: Vec<Row>) -> Result<()> {
-    files::print(&print::tables(&rows))?;
+    files::print(&text)?;
     let Some(path) = &arguments.json else { return Ok(()) };
-    let mut json = serde_json::to_vec_pretty(&Table { rows })?;
+    let mut json = serde_json::to_vec_pretty(&results)?;
     json.push(b'\n');
     files::write_whole(path, &json)
+}
+
+fn rows(arguments: &Arguments, ground: &Ground, progress: &dyn Progress) -> Result<Vec<Row>> {
+    let motion = arguments.poses.as_deref().map(files::poses).transpose()?;
+    let motion = motion.map_or_else(Vec::new, |table| table.poses);
+    let masks = arguments.masks.as_deref().map(|folder| Masks::read(folder, ground)).transpose()?;
+    let tests = tests(arguments)?;
+    let (views, methods) = (views(&ground.rig), methods(arguments));
+    let mut learners = Vec::new();
+    for set in training_sets(arguments, ground)? {
+        learners.extend(learn(&set, &views, ground.rule, &methods, progress)?);
+    }
+    let mut rows = Vec::new();
+    for test in tests {
+        let set = test.set(&ground.rig, &ground.hand, &motion);
+        rows.extend(test_on(&set, &learners, ground, progress)?);
+    }
+    if let Some(masks) = &masks {
+        rows.extend(masks.test(&learners, ground)?);
+    }
+    if arguments.timing {
+        timing::add(&mut rows, &learners, ground)?;
+    }
+    Ok(rows)
 }
 
 /// Every learner's every method on one test set.
