@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use phalanx::Part;
 
-use crate::{files, train};
+use crate::train;
 
 #[derive(Args)]
 pub(crate) struct Arguments {

@@ -12,7 +12,7 @@ use crate::data_set::DataSet;
 use crate::held_out::method::nystrom;
 use crate::sets::{self, Augment};
 use crate::table1::{PaperCounts, TableMethod};
-use crate::{files, progress};
+use crate::{files, memory, progress};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -43,6 +43,9 @@ pub(crate) struct Arguments {
     /// `cargo xtask merge` joins the parts.
     #[arg(long, value_name = "i/n", value_parser = shard)]
     shard: Option<Shard>,
+    /// Say how much memory was held at most.
+    #[arg(long)]
+    memory: bool,
     /// Where the model goes, or a shard's part; target/hand.phalanx by default.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -70,6 +73,15 @@ fn regressor(method: TableMethod, counts: PaperCounts) -> Regressor {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    learn(arguments)?;
+    if !arguments.memory {
+        return Ok(());
+    }
+    let bytes = memory::peak().context("this system does not say how much memory was held")?;
+    files::print(&format!("peak memory: {} MiB\n", bytes.div_ceil(1 << 20)))
+}
+
+fn learn(arguments: &Arguments) -> Result<()> {
     let hand = files::hand(arguments.hand.as_deref())?;
     let rig = views(&files::rig(arguments.rig.as_deref())?, &arguments.views)?;
     if arguments.data_set == "random" {

@@ -203,7 +203,11 @@ fn tests(arguments: &Arguments) -> Result<Vec<Test>> {
         "the test 'poses' needs motion: --poses FILE.csv"
     );
     if !arguments.tests.is_empty() {
-        return Ok(arguments.tests.clone());
+        let mut tests = arguments.tests.clone();
+        if outside && !tests.contains(&Test::Poses) {
+            tests.push(Test::Poses);
+        }
+        return Ok(tests);
     }
     if arguments.masks.is_some() {
         return Ok(if outside { vec![Test::Poses] } else { Vec::new() });
