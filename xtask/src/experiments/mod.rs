@@ -2,6 +2,8 @@
 
 mod finding;
 mod manifold;
+mod orientations;
+mod shape_context;
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +29,8 @@ pub(crate) struct Experiment {
 }
 
 /// In the order of the paper.
-pub(crate) const ALL: &[Experiment] = &[manifold::EXPERIMENT];
+pub(crate) const ALL: &[Experiment] =
+    &[shape_context::EXPERIMENT, orientations::EXPERIMENT, manifold::EXPERIMENT];
 
 #[derive(Args)]
 pub(crate) struct Arguments {
