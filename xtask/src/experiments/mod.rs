@@ -1,7 +1,9 @@
 //! The paper's figures and claims, one experiment each, on the same small harness.
 
+mod digits_out;
 mod finding;
 mod manifold;
+mod nearest_pose;
 mod orientations;
 mod shape_context;
 
@@ -29,8 +31,12 @@ pub(crate) struct Experiment {
 }
 
 /// In the order of the paper.
-pub(crate) const ALL: &[Experiment] =
-    &[shape_context::EXPERIMENT, orientations::EXPERIMENT, manifold::EXPERIMENT];
+pub(crate) const ALL: &[Experiment] = &[
+    shape_context::EXPERIMENT,
+    orientations::EXPERIMENT,
+    manifold::EXPERIMENT,
+    nearest_pose::EXPERIMENT,
+];
 
 #[derive(Args)]
 pub(crate) struct Arguments {
