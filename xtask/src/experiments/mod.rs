@@ -5,6 +5,7 @@ mod finding;
 mod manifold;
 mod nearest_pose;
 mod orientations;
+mod selected_features;
 mod shape_context;
 
 use std::path::{Path, PathBuf};
@@ -36,6 +37,7 @@ pub(crate) const ALL: &[Experiment] = &[
     orientations::EXPERIMENT,
     manifold::EXPERIMENT,
     nearest_pose::EXPERIMENT,
+    selected_features::EXPERIMENT,
 ];
 
 #[derive(Args)]
