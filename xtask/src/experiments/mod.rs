@@ -7,6 +7,7 @@ mod nearest_pose;
 mod orientations;
 mod selected_features;
 mod shape_context;
+mod voting_places;
 
 use std::path::{Path, PathBuf};
 

@@ -156,7 +156,7 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
     if let Some(data) = lab.data {
         let real = digits_out::run(lab, &data.join("digits"))?;
         claims.push(real.holds);
-        sentence += &format!("; {}", real.sentence);
+        sentence = format!("{sentence}; {}", real.sentence);
         tables.extend(real.tables);
         figures.push(real.figure);
         notes.push(real.note);

@@ -1,19 +1,15 @@
 //! Fig. 7: the few features that linear selection keeps, and which part of the hand they see.
 
-use anyhow::{Context, Result, ensure};
+use anyhow::Result;
 use faer::Mat;
-use glam::{DAffine3, DVec2, DVec3};
 use image::{Rgb, RgbImage};
-use phalanx::{Describer, Picture, draw_silhouette, working_camera};
-use phalanx_camera::Camera;
+use phalanx::Describer;
 use phalanx_codebook::{Codebook, Scratch, Voting};
-use phalanx_hand::{HandShape, Pose};
 use phalanx_rvm::{Bridges, Kernel, Stop};
-use phalanx_segmentation::Silhouette;
 use phalanx_shape_context::BINS;
-use rayon::prelude::*;
 use serde_json::json;
 
+use super::voting_places::{Place, along_the_hand, places, silhouette};
 use super::{Experiment, Figure, Finding, Table, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
 use crate::described::Described;
@@ -46,22 +42,6 @@ struct Feature {
     centre: usize,
     codebook: Codebook,
     voting: Voting,
-}
-
-/// Where along the hand a feature's votes come from, means over all poses weighted by the votes.
-struct Place {
-    /// Distance from the wrist along the forearm's direction, mm, on either side.
-    wrist_mm: f64,
-    /// Distance from the foremost point of the contour, mm.
-    tip_mm: f64,
-    /// The distance of all contour points from the wrist, mm.
-    all_wrist_mm: f64,
-}
-
-impl Place {
-    fn is_near_the_wrist(&self) -> bool {
-        self.wrist_mm < self.tip_mm
-    }
 }
 
 /// What one split kept of some views.
@@ -111,16 +91,21 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
             near[1].kept(),
             100.0 * near[0].of_all,
             100.0 * near[1].of_all,
-            mean_of(&three, |place| place.wrist_mm),
-            mean_of(&one, |place| place.wrist_mm),
-            mean_of(&three, |place| place.all_wrist_mm),
+            mean_of(&three, |place| place.from_wrist),
+            mean_of(&one, |place| place.from_wrist),
+            mean_of(&three, |place| place.all_from_wrist),
         ),
         notes: vec![
             "Distances are along the forearm's direction in the camera's image, weighted by the \
              votes over all poses; that from the tips is from the foremost point of each contour, \
-             be it a knuckle of a fist. The claim is taken to hold when most of the kept centres are \
-             nearer the wrist, and more of them than of all centres."
+             be it a knuckle of a fist. The claim is taken to hold when more of the kept centres are \
+             nearer the wrist than of all centres, by two standard errors."
                 .to_owned(),
+            format!(
+                "With two features a single selection says little: of two centres taken blindly both \
+                 are nearer the wrist with chance {:.0} %.",
+                100.0 * near[0].of_all.powi(2)
+            ),
         ],
         tables: vec![table(lab, &selections)],
         figures,
@@ -157,56 +142,6 @@ fn select(
     Ok(Selection { words, split, kept, near_the_wrist })
 }
 
-/// The place of every centre of a camera's codebook.
-fn places(
-    described: &Described,
-    camera: usize,
-    along: &[Vec<f64>],
-    codebook: &Codebook,
-    voting: Voting,
-) -> Result<Vec<Place>> {
-    /// Sums over contour points: the votes for each centre, those times the distances from wrist
-    /// and tip, and the distances from the wrist.
-    struct Sums {
-        votes: Vec<[f64; 3]>,
-        points: [f64; 2],
-    }
-    let of_pose = |scratch: &mut Scratch, pose: usize| -> Result<Sums> {
-        let (along, mut x) = (&along[pose], vec![0.0; codebook.len()]);
-        let contexts = described.contexts[pose][camera].chunks(BINS);
-        ensure!(contexts.len() == along.len(), "pose {pose} was described otherwise");
-        let tip = along.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let mut sums = Sums { votes: vec![[0.0; 3]; codebook.len()], points: [0.0; 2] };
-        for (context, place) in contexts.zip(along) {
-            codebook.soft_assign(context, voting, scratch, &mut x)?;
-            for (sums, vote) in sums.votes.iter_mut().zip(&x) {
-                add(sums, [*vote, vote * place.abs(), vote * (tip - place)]);
-            }
-            add(&mut sums.points, [1.0, place.abs()]);
-        }
-        Ok(sums)
-    };
-    let poses: Vec<Result<Sums>> =
-        (0..described.poses.len()).into_par_iter().map_init(Scratch::default, of_pose).collect();
-    let mut total = Sums { votes: vec![[0.0; 3]; codebook.len()], points: [0.0; 2] };
-    for sums in poses {
-        let sums = sums?;
-        total.votes.iter_mut().zip(sums.votes).for_each(|(total, sum)| add(total, sum));
-        add(&mut total.points, sums.points);
-    }
-    let [points, all_wrist] = total.points;
-    let place = |[votes, wrist, tip]: [f64; 3]| Place {
-        wrist_mm: wrist / votes,
-        tip_mm: tip / votes,
-        all_wrist_mm: all_wrist / points,
-    };
-    Ok(total.votes.into_iter().map(place).collect())
-}
-
-fn add<const N: usize>(total: &mut [f64; N], terms: [f64; N]) {
-    total.iter_mut().zip(terms).for_each(|(total, term)| *total += term);
-}
-
 impl Feature {
     /// The part of each contour point's vote that this centre gets, 0 to 1.
     fn votes(&self, contexts: &[f32]) -> Result<Vec<f64>> {
@@ -217,45 +152,6 @@ impl Feature {
         };
         contexts.chunks(BINS).map(vote).collect()
     }
-}
-
-/// Of every pose, how far each contour point is ahead of the wrist in one camera, mm.
-fn along_the_hand(lab: &Lab<'_>, described: &Described, camera: usize) -> Result<Vec<Vec<f64>>> {
-    let seen_by = &lab.rig.cameras[camera];
-    let (wrist, ahead) = forearm_in(&working_camera(seen_by)?, lab)?;
-    let (hand, rest) = (&lab.hand, lab.rig.volume.rest_frame());
-    let of_pose = |describer: &mut Describer, pose: &Pose| -> Result<Vec<f64>> {
-        let silhouette = silhouette(seen_by, hand, pose, &rest, describer)?;
-        let along =
-            |&point: &[f64; 2]| (DVec2::from(point) - wrist).dot(ahead) / ahead.length_squared();
-        Ok(silhouette.contour.points.iter().map(along).collect())
-    };
-    described.poses.par_iter().map_init(Describer::default, of_pose).collect()
-}
-
-/// The wrist in a camera's image, and what a millimetre along the forearm is there, px.
-fn forearm_in(camera: &Camera, lab: &Lab<'_>) -> Result<(DVec2, DVec2)> {
-    const SPAN_MM: f64 = 100.0;
-    let rest = lab.rig.volume.rest_frame();
-    let seen = |z: f64| {
-        let place = rest.transform_point3(DVec3::new(0.0, 0.0, z));
-        camera.project(place).with_context(|| format!("camera '{}' looks away", camera.name))
-    };
-    Ok((seen(0.0)?, (seen(SPAN_MM)? - seen(0.0)?) / SPAN_MM))
-}
-
-/// What the data set's description saw.
-fn silhouette(
-    camera: &Camera,
-    hand: &HandShape,
-    pose: &Pose,
-    rest: &DAffine3,
-    describer: &mut Describer,
-) -> Result<Silhouette> {
-    let mask = draw_silhouette(camera, hand, pose, rest)?;
-    let mut silhouette = Silhouette::default();
-    describer.silhouette(Picture::Mask(&mask), &mut silhouette)?;
-    Ok(silhouette)
 }
 
 /// How many features are near the wrist rather than the tip.
@@ -277,9 +173,10 @@ impl Nearness {
         }
     }
 
+    /// Whether more of the kept ones are than of all, by two standard errors or more.
     fn is_as_the_paper_says(&self) -> bool {
-        let share = self.near as f64 / self.kept as f64;
-        share > 0.5 && share > self.of_all
+        let error = (self.of_all * (1.0 - self.of_all) / self.kept as f64).sqrt();
+        self.near as f64 / self.kept as f64 > self.of_all + 2.0 * error
     }
 
     fn kept(&self) -> String {
@@ -307,9 +204,9 @@ fn table(lab: &Lab<'_>, selections: &[&Selection]) -> Table {
                 (selection.split + 1).to_string(),
                 lab.rig.cameras[feature.camera].name.replace('_', " "),
                 feature.centre.to_string(),
-                format!("{:.0}", place.wrist_mm),
-                format!("{:.0}", place.tip_mm),
-                format!("{:.0}", place.all_wrist_mm),
+                format!("{:.0}", place.from_wrist),
+                format!("{:.0}", place.from_tip),
+                format!("{:.0}", place.all_from_wrist),
             ]);
         }
     }
@@ -322,8 +219,8 @@ fn rows(lab: &Lab<'_>, selections: &[&Selection]) -> Vec<serde_json::Value> {
             json!({
                 "views": selection.words, "split": selection.split,
                 "camera": lab.rig.cameras[feature.camera].name, "centre": feature.centre,
-                "from_wrist_mm": place.wrist_mm, "from_tip_mm": place.tip_mm,
-                "all_points_from_wrist_mm": place.all_wrist_mm,
+                "from_wrist_mm": place.from_wrist, "from_tip_mm": place.from_tip,
+                "all_points_from_wrist_mm": place.all_from_wrist,
             })
         };
         selection.kept.iter().map(row).collect::<Vec<_>>()
