@@ -76,7 +76,8 @@ impl Axis {
     fn tick(&self, place: f64) -> String {
         let value = if self.scale == Scale::Logarithmic { 10_f64.powf(place) } else { place };
         match value.abs() {
-            0.0 => "0".to_owned(),
+            // Ticks are sums of steps, which may miss 0 by their rounding.
+            size if size < 1e-9 => "0".to_owned(),
             size if size < 0.01 || size >= 1e5 => format!("{value:.0e}"),
             size if size < 1.0 => trimmed(&format!("{value:.2}")).to_owned(),
             size if size < 10.0 => trimmed(&format!("{value:.1}")).to_owned(),
@@ -103,6 +104,8 @@ pub(crate) enum Mark {
     Line,
     LineAndDots,
     Dots,
+    /// Dots that stand out among others.
+    Discs,
 }
 
 impl Series {
@@ -180,11 +183,15 @@ impl Chart {
             let colour = colour(k);
             let points: Vec<(f64, f64)> =
                 series.points.iter().map(|p| (self.x.place(p.0), self.y.place(p.1))).collect();
-            if series.mark != Mark::Dots {
+            if matches!(series.mark, Mark::Line | Mark::LineAndDots) {
                 chart
                     .draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(2)))?;
             }
-            let radius = if series.mark == Mark::Dots { 2 } else { 3 };
+            let radius = match series.mark {
+                Mark::Dots => 2,
+                Mark::Line | Mark::LineAndDots => 3,
+                Mark::Discs => 5,
+            };
             let dots = points.into_iter().filter(|_| series.mark != Mark::Line);
             chart.draw_series(dots.map(|point| Circle::new(point, radius, colour.filled())))?;
         }

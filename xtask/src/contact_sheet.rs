@@ -5,19 +5,15 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use glam::DVec3;
 use image::{GrayImage, RgbImage, imageops};
-use phalanx::{
-    Describer, Estimator, Progress, Training, WORKING_SIZE, Workspace, draw_overlay,
-    draw_silhouette,
-};
-use phalanx_camera::{Camera, Intrinsics, Rig};
+use phalanx::{Describer, Estimator, Progress, Training, Workspace, draw_overlay, draw_silhouette};
 use phalanx_hand::{HandShape, Side};
-use phalanx_segmentation::{Cleanup, CropWindow, Silhouette, SkinModel, clean, downsample};
+use phalanx_segmentation::{Cleanup, CropWindow, Silhouette, SkinModel, clean};
 use rayon::prelude::*;
 
 use crate::data_set::DataSet;
-use crate::{files, progress, saturation};
+use crate::mosaic::mosaic;
+use crate::{files, photographs, progress, saturation};
 
 /// Panels beside each other on a sheet, and below each other.
 const GRID: (u32, u32) = (12, 8);
@@ -81,7 +77,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             continue;
         }
         let bar = progress::Bar::new();
-        let photographs = photographs(&folder)?;
+        let photographs = photographs::below(&folder)?;
         let looks = look_at(&photographs, &set.estimator(&bar)?, &bar);
         drop(bar);
         write_sheets(&arguments.out, set.name, &looks)?;
@@ -94,73 +90,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     files::print(&report)
 }
 
-/// From the wrist to a little beyond the fingertips.
-const HAND_MM: f64 = 195.0;
-
 impl Set {
-    /// The top camera of the desk, aimed and zoomed so that hand and forearm fill its width.
-    fn rig(&self) -> Result<Rig> {
-        let mut rig = files::rig(None)?.select(&["top"])?;
-        let top = &rig.cameras[0];
-        let middle = DVec3::new(0.0, 0.0, 0.5 * (HAND_MM - self.forearm_mm));
-        let position = DVec3::new(0.0, top.centre().y, middle.z);
-        let intrinsics = top.intrinsics;
-        let (width, height) = (intrinsics.width, intrinsics.height);
-        let focal = f64::from(width) * position.y / (HAND_MM + self.forearm_mm);
-        let intrinsics = Intrinsics::pinhole(width, height, focal);
-        rig.cameras[0] = Camera::look_at(&top.name, intrinsics, position, middle, DVec3::X)?;
-        Ok(rig)
-    }
-
     /// An estimator for this view alone, learnt from `complex`. The photographs show palms of right
     /// hands and backs of left ones, whose silhouettes are those of a left hand seen from above.
     fn estimator(&self, progress: &dyn Progress) -> Result<Estimator> {
         let hand = HandShape { side: Side::Left, ..files::hand(None)? };
         let data_set = DataSet::stored("complex")?;
-        Ok(Training::default().run(&self.rig()?, &hand, &data_set.poses, progress)?)
+        let rig = photographs::framed(self.forearm_mm)?;
+        Ok(Training::default().run(&rig, &hand, &data_set.poses, progress)?)
     }
-}
-
-/// All photographs below a folder with their names, in order; large ones at the working size.
-/// What cannot be read is named on standard error and left out.
-fn photographs(folder: &Path) -> Result<Vec<(String, RgbImage)>> {
-    let mut paths = Vec::new();
-    collect(folder, &mut paths)?;
-    paths.sort();
-    let load = |path: &PathBuf| -> Result<(String, RgbImage)> {
-        let image = image::open(path).with_context(|| path.display().to_string())?.to_rgb8();
-        let name = path.strip_prefix(folder).unwrap_or(path).display().to_string();
-        let (width, height) = WORKING_SIZE;
-        if image.width() > width && image.height() > height {
-            return Ok((name, downsample(&image, width, height)?));
-        }
-        Ok((name, image))
-    };
-    let loaded: Vec<_> = paths.par_iter().map(load).collect();
-    let readable = loaded.into_iter().filter_map(|photograph| {
-        photograph.inspect_err(|error| eprintln!("left out: {error:#}")).ok()
-    });
-    let photographs: Vec<_> = readable.collect();
-    if photographs.is_empty() {
-        bail!("{}: no photographs", folder.display());
-    }
-    Ok(photographs)
-}
-
-fn collect(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<()> {
-    let entries = std::fs::read_dir(folder).with_context(|| folder.display().to_string())?;
-    for entry in entries {
-        let path = entry.with_context(|| folder.display().to_string())?.path();
-        let extension = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
-        if path.is_dir() {
-            collect(&path, paths)?;
-        } else if extension
-            .is_some_and(|extension| ["jpg", "jpeg", "png"].iter().any(|known| extension == *known))
-        {
-            paths.push(path);
-        }
-    }
-    Ok(())
 }
 
 fn look_at(
@@ -242,15 +180,7 @@ fn write_sheets(folder: &Path, name: &str, looks: &[Look]) -> Result<()> {
 }
 
 fn write_sheet(path: &Path, panels: &[&RgbImage]) -> Result<()> {
-    let width = panels.iter().map(|panel| panel.width()).max().unwrap_or_default();
-    let height = PANEL_HEIGHT;
-    let rows = (panels.len() as u32).div_ceil(GRID.0);
-    let mut sheet = RgbImage::new(width * GRID.0, height * rows);
-    for (k, panel) in panels.iter().enumerate() {
-        let (column, row) = (k as u32 % GRID.0, k as u32 / GRID.0);
-        imageops::replace(&mut sheet, *panel, (column * width).into(), (row * height).into());
-    }
-    files::write_png(path, &sheet)
+    files::write_png(path, &mosaic(panels, GRID.0, 0))
 }
 
 impl Set {

@@ -1,6 +1,7 @@
-//! The mean of the nearest neighbours: the simplest regressor to compare with.
+//! Nearest neighbours: the simplest estimates to compare with.
 
 use faer::{Mat, MatRef};
+use phalanx_codebook::chi_squared;
 use rayon::prelude::*;
 
 /// For each column of `queries`, the mean of the targets of the `count` training columns that
@@ -27,6 +28,23 @@ pub(crate) fn nearest_mean(
     })
 }
 
+/// For each column of `queries`, the number of the training column at the smallest χ²; of equal
+/// ones the first. Columns are histograms, or several of them one after the other.
+pub(crate) fn nearest_by_chi_squared(
+    train: MatRef<'_, f64>,
+    queries: MatRef<'_, f64>,
+) -> Vec<usize> {
+    let columns = |x: MatRef<'_, f64>| -> Vec<Vec<f32>> {
+        (0..x.ncols()).map(|i| x.col(i).iter().map(|&votes| votes as f32).collect()).collect()
+    };
+    let train = columns(train);
+    let nearest = |query: &Vec<f32>| {
+        let distances = train.iter().map(|sample| chi_squared(sample, query)).enumerate();
+        distances.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i)
+    };
+    columns(queries).par_iter().map(nearest).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use faer::mat;
@@ -40,5 +58,11 @@ mod tests {
         let queries = mat![[0.4]];
         let mean = nearest_mean(train.as_ref(), targets.as_ref(), queries.as_ref(), 3);
         assert_eq!(mean[(0, 0)], 4.0);
+    }
+    #[test]
+    fn the_nearest_histogram_is_found() {
+        let train = mat![[1.0, 0.5, 0.5], [0.0, 0.5, 0.5]];
+        let queries = mat![[0.9, 0.4], [0.1, 0.6]];
+        assert_eq!(nearest_by_chi_squared(train.as_ref(), queries.as_ref()), [0, 1]);
     }
 }

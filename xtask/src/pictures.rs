@@ -52,7 +52,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
 }
 
 /// The posed hand as one camera would photograph it.
-fn photograph(
+pub(crate) fn photograph(
     camera: &Camera,
     hand: &HandShape,
     pose: &Pose,

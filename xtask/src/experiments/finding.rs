@@ -97,6 +97,10 @@ impl Figure {
         Ok(Self { caption: caption.to_string(), content: Content::Svg(cells.svg()?) })
     }
 
+    pub(crate) fn svg(caption: impl Display, svg: String) -> Self {
+        Self { caption: caption.to_string(), content: Content::Svg(svg) }
+    }
+
     pub(crate) fn picture(caption: impl Display, picture: &RgbImage) -> Result<Self> {
         let mut png = std::io::Cursor::new(Vec::new());
         picture.write_to(&mut png, ImageFormat::Png)?;

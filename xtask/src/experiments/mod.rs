@@ -1,7 +1,13 @@
 //! The paper's figures and claims, one experiment each, on the same small harness.
 
+mod digits_out;
 mod finding;
 mod manifold;
+mod nearest_pose;
+mod orientations;
+mod selected_features;
+mod shape_context;
+mod voting_places;
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +33,13 @@ pub(crate) struct Experiment {
 }
 
 /// In the order of the paper.
-pub(crate) const ALL: &[Experiment] = &[manifold::EXPERIMENT];
+pub(crate) const ALL: &[Experiment] = &[
+    shape_context::EXPERIMENT,
+    orientations::EXPERIMENT,
+    manifold::EXPERIMENT,
+    nearest_pose::EXPERIMENT,
+    selected_features::EXPERIMENT,
+];
 
 #[derive(Args)]
 pub(crate) struct Arguments {
