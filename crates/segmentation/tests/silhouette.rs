@@ -64,7 +64,7 @@ proptest! {
         prop_assert!((f64::from(y) + 77.0 - forearm.end[1]).abs() < 4.0);
         // Either side of the end, a forearm's width of 12 pixels apart.
         let [a, b] = forearm.sides;
-        prop_assert!(((a[0] - b[0]).abs() - 12.0).abs() < 0.5, "{:?}", forearm.sides);
+        prop_assert!(((a[0] - b[0]).abs() - 12.0).abs() < 1.0, "{:?}", forearm.sides);
         for axis in [0, 1] {
             prop_assert!((f64::midpoint(a[axis], b[axis]) - forearm.end[axis]).abs() < 1e-9);
         }
