@@ -37,13 +37,11 @@ impl Forearm {
     /// a corner is one run. Without any, it is the end along the principal axis that is a smooth
     /// stump rather than fingers.
     pub fn find(mask: &GrayImage, contour: &Contour) -> Result<Self> {
-        match border_crossing(mask) {
-            Some(forearm) => Ok(forearm),
-            None => {
-                let Stump { end, sides } = find_stump(mask, contour)?;
-                Ok(Forearm { end, sides, evidence: Evidence::Stump, crossings: 0 })
-            }
+        if let Some(forearm) = border_crossing(mask) {
+            return Ok(forearm);
         }
+        let Stump { end, sides } = find_stump(mask, contour)?;
+        Ok(Forearm { end, sides, evidence: Evidence::Stump, crossings: 0 })
     }
 }
 

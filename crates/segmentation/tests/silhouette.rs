@@ -62,6 +62,12 @@ proptest! {
         prop_assert_eq!(forearm.evidence, Evidence::Stump);
         prop_assert!((forearm.end[0] - f64::from(x) - 36.0).abs() < 1.0);
         prop_assert!((f64::from(y) + 77.0 - forearm.end[1]).abs() < 4.0);
+        // Either side of the end, a forearm's width of 12 pixels apart.
+        let [a, b] = forearm.sides;
+        prop_assert!(((a[0] - b[0]).abs() - 12.0).abs() < 1.0, "{:?}", forearm.sides);
+        for axis in [0, 1] {
+            prop_assert!((f64::midpoint(a[axis], b[axis]) - forearm.end[axis]).abs() < 1e-9);
+        }
     }
 }
 
@@ -72,6 +78,7 @@ fn the_forearm_ends_in_the_middle_of_the_longest_crossing() {
         (forearm.end, forearm.evidence, forearm.crossings),
         ([34.0, 69.5], Evidence::Border, 1)
     );
+    assert_eq!(forearm.sides, [[39.5, 69.5], [28.5, 69.5]]);
 
     // A finger that leaves by the top as well.
     let both =

@@ -109,7 +109,7 @@ fn an_overlay_shows_the_pictures_side_by_side_and_what_was_seen() {
     assert_eq!(overlay.dimensions(), (640, 240));
     let count = |colour: [u8; 3]| overlay.pixels().filter(|pixel| pixel.0 == colour).count();
     assert!(count([40, 220, 90]) > 500, "the contour that was seen");
-    assert!(count([255, 210, 0]) > 50, "the hand axis");
+    assert!(count([255, 210, 0]) > 50, "the forearm's axis");
     assert!(count([230, 40, 160]) > 200, "the hand that was estimated");
     // Far from the hand the photographs are as they were.
     let corner = desk.open("top.png").to_rgb8();
