@@ -52,6 +52,12 @@ impl AngleErrors {
         self.std.iter().sum::<f64>() / self.std.len() as f64
     }
 
+    /// Mean and standard deviation of one of the dofs' absolute errors, degrees.
+    pub(crate) fn of(&self, dof: Dof) -> Option<(f64, f64)> {
+        let k = self.dofs.iter().position(|&of| of == dof)?;
+        Some((self.mean[k], self.std[k]))
+    }
+
     /// The dof with the largest mean error, and that error in degrees.
     pub(crate) fn worst(&self) -> (Dof, f64) {
         let pairs = self.dofs.iter().copied().zip(self.mean.iter().copied());

@@ -1,7 +1,10 @@
 //! The paper's figures and claims, one experiment each, on the same small harness.
 
 mod finding;
+mod fusion;
 mod manifold;
+mod sparsity;
+mod thresholds;
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +30,8 @@ pub(crate) struct Experiment {
 }
 
 /// In the order of the paper.
-pub(crate) const ALL: &[Experiment] = &[manifold::EXPERIMENT];
+pub(crate) const ALL: &[Experiment] =
+    &[fusion::EXPERIMENT, manifold::EXPERIMENT, sparsity::EXPERIMENT, thresholds::EXPERIMENT];
 
 #[derive(Args)]
 pub(crate) struct Arguments {
