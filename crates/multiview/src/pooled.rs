@@ -85,7 +85,9 @@ impl Pooled {
         }
         let Scratch { voting, pool } = scratch;
         pool.clear();
-        contexts.iter().for_each(|view| pool.extend_from_slice(view.as_ref()));
+        for view in contexts {
+            pool.extend_from_slice(view.as_ref());
+        }
         self.codebook.soft_assign(pool, self.voting, voting, x).map_err(Error::Pooled)
     }
 }

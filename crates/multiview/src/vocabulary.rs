@@ -69,7 +69,7 @@ impl Vocabulary {
     {
         check(contexts, dim)?;
         let clustering = KMeans { centres: self.centres, ..self.clustering };
-        let of_all = contexts.iter().flat_map(|sample| sample.as_ref()).map(AsRef::as_ref);
+        let of_all = contexts.iter().flat_map(AsRef::as_ref).map(AsRef::as_ref);
         let fit = clustering.fit(&evenly_spaced(of_all, dim, self.most_samples), dim);
         Pooled::from_parts(fit.map_err(Error::Pooled)?.codebook, self.voting)
     }

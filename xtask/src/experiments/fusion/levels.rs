@@ -69,6 +69,18 @@ pub(super) struct Training<'a> {
 }
 
 impl Level<'_> {
+    /// The name in tables.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::Low => "low: pooled, 90 centres",
+            Self::Intermediate => "intermediate: 30 centres a view",
+            Self::IntermediateLarge => "intermediate: 90 centres a view",
+            Self::High => "high: 30 centres a view",
+            Self::HighLarge => "high: 90 centres a view",
+            Self::Shared(_) => "high: one regressor for all, 90 centres",
+        }
+    }
+
     /// The descriptors of each regressor's estimates.
     fn inputs<'b>(&self, x: &'b Descriptors) -> &'b [Mat<f64>] {
         match self {

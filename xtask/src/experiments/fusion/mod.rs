@@ -157,12 +157,12 @@ fn outcomes(
         AngleErrors::new(estimates.as_ref(), truth.as_ref(), &set.active)
     };
     let mut outcomes = Vec::new();
-    for (family, name, level) in levels(azimuths) {
+    for (family, level) in levels(azimuths) {
         for &kept in level.kept() {
             let tests: Vec<_> = tests.iter().collect();
             for (join, estimates) in level.estimates(&training, kept, &tests)? {
                 let errors = estimates.iter().zip(&truths).map(|(e, truth)| errors(e, truth));
-                let way = Way { family, level: name, kept, join };
+                let way = Way { family, level: level.name(), kept, join };
                 outcomes.push(Outcome { way, errors: errors.collect() });
             }
         }
@@ -171,15 +171,15 @@ fn outcomes(
     Ok((outcomes, truths.iter().map(guess).collect()))
 }
 
-/// The levels with their names.
-fn levels(azimuths: &[f64]) -> [(Family, &'static str, Level<'_>); 6] {
+/// All levels, in the order of the table.
+fn levels(azimuths: &[f64]) -> [(Family, Level<'_>); 6] {
     [
-        (Family::Low, "low: pooled, 90 centres", Level::Low),
-        (Family::Intermediate, "intermediate: 30 centres a view", Level::Intermediate),
-        (Family::IntermediateLarge, "intermediate: 90 centres a view", Level::IntermediateLarge),
-        (Family::High, "high: 30 centres a view", Level::High),
-        (Family::High, "high: 90 centres a view", Level::HighLarge),
-        (Family::High, "high: one regressor for all, 90 centres", Level::Shared(azimuths)),
+        (Family::Low, Level::Low),
+        (Family::Intermediate, Level::Intermediate),
+        (Family::IntermediateLarge, Level::IntermediateLarge),
+        (Family::High, Level::High),
+        (Family::High, Level::HighLarge),
+        (Family::High, Level::Shared(azimuths)),
     ]
 }
 

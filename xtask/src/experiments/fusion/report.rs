@@ -3,7 +3,7 @@
 use phalanx_hand::Dof;
 use serde_json::{Value, json};
 
-use super::levels::{Join, Kept};
+use super::levels::{Join, Kept, Level};
 use super::unseen::HOLE_PX;
 use super::{Family, Outcome, Results, SPLITS, Way};
 use crate::experiments::{Finding, Table, Verdict};
@@ -78,13 +78,17 @@ fn notes(open_close: &Results, complex: &Results) -> Vec<String> {
         }
     };
     let each = |set: &Results| best(set, 0, |way| way.kept == Kept::Each);
+    let dense = |level: Level<'static>| {
+        let name = level.name();
+        both(&move |set| best(set, 0, |way| way.level == name && way.kept == Kept::Dense))
+    };
     let [low, intermediate, high] = families(complex, Kept::Dense, 1);
     let [low_sparse, intermediate_sparse, high_sparse] = families(complex, Kept::InAll, 1);
     vec![
         format!(
-            "Low against intermediate is a matter of centres: a pooled histogram has 90 where each \
-             view's has 30. With 90 centres for every view the intermediate level has {}, beside \
-             {} of the low level. The paper's reason against pooling, that it confounds \
+            "Low against intermediate is in part a matter of centres: a pooled histogram has 90 \
+             where each view's has 30. With 90 centres for every view the intermediate level has \
+             {}, beside {} of the low level. The paper's reason against pooling, that it confounds \
              orientations, shows in θ_Z: {} pooled, {} with 30 centres a view, {} with 90.",
             both(&sparse(Family::IntermediateLarge)),
             both(&sparse(Family::Low)),
@@ -94,10 +98,14 @@ fn notes(open_close: &Results, complex: &Results) -> Vec<String> {
         ),
         format!(
             "The high level needs samples for every view: with as many for each of the views as the \
-             other levels have in all, it comes to {}. With all samples, one view alone determines \
-             poses that have neighbours in the training half, and weighting by predictive \
-             variance picks the view whose neighbours are nearest.",
+             other levels have in all, it comes to {}. With all samples and equal codebooks the best \
+             of its joins has {} beside {} of the intermediate level at 30 centres a view, and {} \
+             beside {} at 90.",
             both(&each),
+            dense(Level::High),
+            dense(Level::Intermediate),
+            dense(Level::HighLarge),
+            dense(Level::IntermediateLarge),
         ),
         format!(
             "On motion of other takes (trained on complex; guessing errs by {:.2}°), which has no \
