@@ -175,9 +175,8 @@ fn finding(curves: &[Curves]) -> Result<Finding> {
             shares.join(" and at ")
         ),
         notes: vec![format!(
-            "Below some threshold the prior ν alone says how many columns survive, and there one \
-             view and three differ little or the other way round; the paper does not give its ν. \
-             Counted are the thresholds that leave less than {:.0} % of what the lowest leaves, to \
+            "Below some threshold the prior ν alone says how many columns survive, and there the \
+             counts say nothing of T_a; the paper does not give its ν. Counted are the thresholds that leave less than {:.0} % of what the lowest leaves, to \
              either.",
             100.0 * CUT
         )],
