@@ -210,37 +210,60 @@ pub(crate) struct CellMap {
     pub(crate) y: &'static str,
     /// Row by row, each of as many cells.
     pub(crate) rows: Vec<Vec<bool>>,
+    /// Names of neighbouring columns and rows, with how many each has; lines part them.
+    pub(crate) column_groups: Vec<(String, usize)>,
+    pub(crate) row_groups: Vec<(String, usize)>,
 }
+
+/// Where the cells of a map begin, px: right of the rows' names.
+const CELLS: (i32, i32) = (86, 8);
+/// Size of the part of the picture that cells fill, px: room for the columns' names is below.
+const CELLS_SIZE: (i32, i32) = (SIZE.0 as i32 - CELLS.0 - 10, SIZE.1 as i32 - CELLS.1 - 46);
 
 impl CellMap {
     pub(crate) fn svg(&self) -> Result<String> {
+        let columns = self.rows.first().map_or(0, Vec::len);
+        let rows = self.rows.len();
+        let x = |column: usize| CELLS.0 + (column as i32 * CELLS_SIZE.0) / columns.max(1) as i32;
+        let y = |row: usize| CELLS.1 + (row as i32 * CELLS_SIZE.1) / rows.max(1) as i32;
+        let (right, bottom) = (x(columns), y(rows));
         draw(|area| {
-            let columns = self.rows.first().map_or(0, Vec::len) as i32;
-            let rows = self.rows.len() as i32;
-            let mut chart = ChartBuilder::on(area)
-                .margin(8)
-                .x_label_area_size(44)
-                .y_label_area_size(56)
-                .build_cartesian_2d(0..columns, rows..0)?;
-            chart
-                .configure_mesh()
-                .disable_mesh()
-                .x_labels(6)
-                .y_labels(6)
-                .x_desc(self.x)
-                .y_desc(self.y)
-                .label_style(TEXT)
-                .axis_desc_style(TEXT)
-                .draw()?;
-            let set = self.rows.iter().enumerate().flat_map(|(y, row)| {
-                let set = row.iter().enumerate().filter(|(_, set)| **set);
-                set.map(move |(x, _)| (x as i32, y as i32))
-            });
-            let cell = |(x, y)| Rectangle::new([(x, y), (x + 1, y + 1)], PALETTE[0].filled());
-            chart.draw_series(set.map(cell))?;
-            Ok(())
+            for (row, cells) in self.rows.iter().enumerate() {
+                for column in (0..columns).filter(|&column| cells[column]) {
+                    let corners = [(x(column), y(row)), (x(column + 1), y(row + 1))];
+                    area.draw(&Rectangle::new(corners, PALETTE[0].filled()))?;
+                }
+            }
+            let centred = TEXT.into_text_style(area).pos(Pos::new(HPos::Center, VPos::Center));
+            let upright = centred.transform(FontTransform::Rotate270);
+            let before = TEXT.into_text_style(area).pos(Pos::new(HPos::Right, VPos::Center));
+            let line = |from, to| PathElement::new([from, to], BLACK.stroke_width(1));
+            for (name, from, to) in places(&self.column_groups) {
+                area.draw(&line((x(from), CELLS.1), (x(from), bottom)))?;
+                let middle = i32::midpoint(x(from), x(to));
+                area.draw(&Text::new(name, (middle, bottom + 12), centred.clone()))?;
+            }
+            for (name, from, to) in places(&self.row_groups) {
+                area.draw(&line((CELLS.0, y(from)), (right, y(from))))?;
+                let middle = i32::midpoint(y(from), y(to));
+                area.draw(&Text::new(name, (CELLS.0 - 6, middle), before.clone()))?;
+            }
+            area.draw(&line((right, CELLS.1), (right, bottom)))?;
+            area.draw(&line((CELLS.0, bottom), (right, bottom)))?;
+            let middle = (i32::midpoint(CELLS.0, right), i32::midpoint(CELLS.1, bottom));
+            area.draw(&Text::new(self.x, (middle.0, bottom + 32), centred))?;
+            area.draw(&Text::new(self.y, (12, middle.1), upright))
         })
     }
+}
+
+/// Each group's name with where it begins and ends.
+fn places(groups: &[(String, usize)]) -> impl Iterator<Item = (&str, usize, usize)> {
+    groups.iter().scan(0, |end, (name, size)| {
+        let begin = *end;
+        *end += size;
+        Some((name.as_str(), begin, *end))
+    })
 }
 
 type Canvas<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;

@@ -57,11 +57,7 @@ impl Described {
 
     /// The paper's codebooks, learnt from some samples.
     fn codebooks(&self, views: &[usize], samples: &[usize], seed: u64) -> Result<Concatenation> {
-        let vocabulary = Vocabulary {
-            clustering: KMeans { seed, ..Vocabulary::default().clustering },
-            ..Vocabulary::default()
-        };
-        Ok(vocabulary.fit(&self.seen(views, samples), BINS)?)
+        Ok(vocabulary(seed).fit(&self.seen(views, samples), BINS)?)
     }
 
     /// Descriptors and poses of some samples.
@@ -81,4 +77,10 @@ impl Described {
         let of = |&i: &usize| views.iter().map(|&v| self.contexts[i][v].as_slice()).collect();
         samples.iter().map(of).collect()
     }
+}
+
+/// The paper's vocabulary, clustered from this seed.
+pub(crate) fn vocabulary(seed: u64) -> Vocabulary {
+    let default = Vocabulary::default();
+    Vocabulary { clustering: KMeans { seed, ..default.clustering }, ..default }
 }

@@ -52,13 +52,10 @@ impl AngleErrors {
         self.std.iter().sum::<f64>() / self.std.len() as f64
     }
 
-    /// Mean absolute error of one of the dofs, degrees.
-    ///
-    /// # Panics
-    /// When it is not one of those compared.
-    pub(crate) fn of(&self, dof: Dof) -> f64 {
-        let place = self.dofs.iter().position(|&other| other == dof);
-        self.mean[place.expect("the dof was compared")]
+    /// Mean and standard deviation of one of the dofs' absolute errors, degrees.
+    pub(crate) fn of(&self, dof: Dof) -> Option<(f64, f64)> {
+        let k = self.dofs.iter().position(|&of| of == dof)?;
+        Some((self.mean[k], self.std[k]))
     }
 
     /// The dof with the largest mean error, and that error in degrees.

@@ -3,7 +3,7 @@
 use phalanx_codebook::{Codebook, Voting};
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Result};
+use crate::{Error, Result, Scratch};
 
 /// The fitted codebooks of the views; joins the views' histograms into one vector x (§ 2 of the
 /// paper: "combine the information at an intermediate level").
@@ -34,10 +34,6 @@ impl From<Concatenation> for Parts {
         Self { codebooks: joined.codebooks, voting: joined.voting }
     }
 }
-
-/// Memory that describing one sample after another uses again.
-#[derive(Debug, Default)]
-pub struct Scratch(phalanx_codebook::Scratch);
 
 impl Concatenation {
     /// Joins codebooks, one per view, in the order of the views.
@@ -101,7 +97,7 @@ impl Concatenation {
             let part;
             (part, rest) = rest.split_at_mut(codebook.len());
             codebook
-                .soft_assign(contexts.as_ref(), self.voting, &mut scratch.0, part)
+                .soft_assign(contexts.as_ref(), self.voting, &mut scratch.voting, part)
                 .map_err(|reason| Error::View { view, reason })?;
         }
         Ok(())

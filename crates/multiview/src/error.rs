@@ -12,6 +12,9 @@ pub enum Error {
         /// What its codebook says.
         reason: phalanx_codebook::Error,
     },
+    /// The codebook of all views together could not be fitted or applied.
+    #[error("all views: {0}")]
+    Pooled(phalanx_codebook::Error),
     /// There is no view at all.
     #[error("there is no view")]
     NoViews,
@@ -42,6 +45,36 @@ pub enum Error {
         expected: usize,
         /// Length given.
         found: usize,
+    },
+    /// A view's estimate, or its deviations, of another length than the first view's estimate.
+    #[error("view {view} has {found} numbers for {expected} outputs")]
+    EstimateLength {
+        /// The view, from 0.
+        view: usize,
+        /// Length of the first view's estimate.
+        expected: usize,
+        /// Length given.
+        found: usize,
+    },
+    /// An estimate or a deviation that is not finite.
+    #[error("view {view}, output {output}: {value} is no number to join")]
+    Estimate {
+        /// The view, from 0.
+        view: usize,
+        /// The output, from 0.
+        output: usize,
+        /// What was given.
+        value: f64,
+    },
+    /// A deviation below 0.
+    #[error("view {view}, output {output}: {value} is no standard deviation")]
+    Deviation {
+        /// The view, from 0.
+        view: usize,
+        /// The output, from 0.
+        output: usize,
+        /// What was given.
+        value: f64,
     },
 }
 

@@ -2,17 +2,18 @@
 
 use phalanx_codebook::{KMeans, Voting};
 
-use crate::{Concatenation, Error, Result};
+use crate::{Concatenation, Error, Pooled, Result};
 
 /// The codebooks to learn: the paper's 90 centres, shared as evenly as they go by the views, so that
-/// descriptors of one view and of three have the same length (§ 2).
+/// descriptors of one view and of three have the same length (§ 2); or all in one codebook, for
+/// [`pool`](Self::pool).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vocabulary {
     /// Centres of all views together.
     pub centres: usize,
     /// How the shape contexts vote.
     pub voting: Voting,
-    /// At most this many shape contexts of each view are clustered, evenly spaced over all.
+    /// At most this many shape contexts are clustered for a codebook, evenly spaced over all.
     pub most_samples: usize,
     /// The clustering; its number of centres is replaced by each view's share, and each view
     /// has a seed of its own that follows from this one.
@@ -49,10 +50,28 @@ impl Vocabulary {
                 seed: self.clustering.seed.wrapping_mul(1_000_003).wrapping_add(view as u64),
                 ..self.clustering
             };
-            let fit = clustering.fit(&evenly_spaced(contexts, view, dim, self.most_samples), dim);
+            let of_view = contexts.iter().map(|sample| sample.as_ref()[view].as_ref());
+            let fit = clustering.fit(&evenly_spaced(of_view, dim, self.most_samples), dim);
             fit.map(|fit| fit.codebook).map_err(|reason| Error::View { view, reason })
         });
         Concatenation::from_parts(codebooks.collect::<Result<_>>()?, self.voting)
+    }
+
+    /// Learns one codebook, of all the centres, from all views together; `contexts` as in
+    /// [`fit`](Self::fit). Low-level fusion.
+    ///
+    /// # Errors
+    /// As of [`fit`](Self::fit).
+    pub fn pool<S, V>(&self, contexts: &[S], dim: usize) -> Result<Pooled>
+    where
+        S: AsRef<[V]>,
+        V: AsRef<[f32]>,
+    {
+        check(contexts, dim)?;
+        let clustering = KMeans { centres: self.centres, ..self.clustering };
+        let of_all = contexts.iter().flat_map(AsRef::as_ref).map(AsRef::as_ref);
+        let fit = clustering.fit(&evenly_spaced(of_all, dim, self.most_samples), dim);
+        Pooled::from_parts(fit.map_err(Error::Pooled)?.codebook, self.voting)
     }
 }
 
@@ -75,19 +94,17 @@ fn check<S: AsRef<[V]>, V: AsRef<[f32]>>(contexts: &[S], dim: usize) -> Result<u
     Ok(views)
 }
 
-/// At most `most` of the shape contexts of one view of all samples, evenly spaced.
-fn evenly_spaced<S: AsRef<[V]>, V: AsRef<[f32]>>(
-    contexts: &[S],
-    view: usize,
+/// At most `most` of the shape contexts, evenly spaced.
+fn evenly_spaced<'a>(
+    contexts: impl Iterator<Item = &'a [f32]> + Clone,
     dim: usize,
     most: usize,
 ) -> Vec<f32> {
-    let of_view = || contexts.iter().map(|sample| sample.as_ref()[view].as_ref());
-    let total = of_view().map(<[f32]>::len).sum::<usize>() / dim;
+    let total = contexts.clone().map(<[f32]>::len).sum::<usize>() / dim;
     let kept = total.min(most);
     let mut spaced = Vec::with_capacity(kept * dim);
     let mut taken = 0;
-    for (k, context) in of_view().flat_map(|values| values.chunks_exact(dim)).enumerate() {
+    for (k, context) in contexts.flat_map(|values| values.chunks_exact(dim)).enumerate() {
         if taken < kept && k == taken * total / kept {
             spaced.extend_from_slice(context);
             taken += 1;

@@ -1,7 +1,7 @@
 //! Joining views: properties, refusals, storage and threads.
 
 use phalanx_codebook::{Codebook, KMeans, Voting};
-use phalanx_multiview::{Concatenation, Error, Scratch, Vocabulary};
+use phalanx_multiview::{Concatenation, Error, Pooled, Scratch, Vocabulary};
 use proptest::prelude::*;
 use proptest::test_runner::Config;
 
@@ -240,6 +240,63 @@ fn what_cannot_be_described_is_named() {
     assert!(matches!(describe(&samples[0], 17), Error::OutputLength { expected: 18, found: 17 }));
     let blind = [samples[0][0].clone(), Vec::new()];
     assert!(matches!(describe(&blind, 18), Error::View { view: 1, .. }));
+}
+
+#[test]
+fn pooling_forgets_which_view_saw_what() {
+    let samples = samples(3);
+    let pooled = vocabulary().pool(&samples, BINS).unwrap();
+    let describe = |sample: &[Vec<f32>]| {
+        let mut x = vec![f64::NAN; pooled.dim()];
+        pooled.describe(sample, &mut Scratch::default(), &mut x).unwrap();
+        x
+    };
+    assert_eq!(pooled.dim(), 18, "every centre serves all views");
+    let sample = &samples[7];
+    let x = describe(sample);
+    assert!((x.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+    assert_eq!(x, describe(&[sample.concat()]), "as one view with all the contexts");
+    // Each view's histogram counts by its number of contexts, which here is the same.
+    let each: Vec<_> = sample.iter().map(|view| describe(std::slice::from_ref(view))).collect();
+    for (k, x) in x.iter().enumerate() {
+        assert!((x - each.iter().map(|view| view[k]).sum::<f64>() / 3.0).abs() < 1e-9);
+    }
+    let mut turned = sample.clone();
+    turned.rotate_left(1);
+    let turned = describe(&turned);
+    assert!(x.iter().zip(&turned).all(|(a, b)| (a - b).abs() < 1e-9));
+}
+
+#[test]
+fn pooling_is_learning_from_a_single_view_of_all_contexts() {
+    let samples = samples(3);
+    let flat: Vec<Views> = samples.iter().map(|views| vec![views.concat()]).collect();
+    let pooled = Vocabulary { most_samples: 50, ..vocabulary() }.pool(&samples, BINS).unwrap();
+    let again = Vocabulary { most_samples: 50, ..vocabulary() }.pool(&flat, BINS).unwrap();
+    assert_eq!(pooled, again);
+}
+
+#[test]
+fn what_cannot_be_pooled_is_named() {
+    let samples = samples(2);
+    let pooled = vocabulary().pool(&samples, BINS).unwrap();
+    let describe = |views: &[Vec<f32>], length: usize| {
+        let mut x = vec![0.0; length];
+        pooled.describe(views, &mut Scratch::default(), &mut x).unwrap_err()
+    };
+    assert!(matches!(describe(&[], 18), Error::NoViews));
+    assert!(matches!(describe(&samples[0], 17), Error::OutputLength { expected: 18, found: 17 }));
+    assert_eq!(describe(&[Vec::new()], 18).to_string(), "all views: no samples");
+    assert!(matches!(vocabulary().pool::<Views, _>(&[], BINS), Err(Error::NoViews)));
+    for neighbours in [0, 19] {
+        let parts = Pooled::from_parts(pooled.codebook().clone(), Voting { neighbours });
+        assert!(matches!(parts, Err(Error::Pooled(_))));
+    }
+    let stored = serde_json::to_string(&pooled).unwrap();
+    assert_eq!(serde_json::from_str::<Pooled>(&stored).unwrap(), pooled);
+    let greedy = stored.replace(r#""neighbours":5"#, r#""neighbours":19"#);
+    let error = serde_json::from_str::<Pooled>(&greedy).unwrap_err().to_string();
+    assert!(error.contains("19 neighbours among 18 centres"), "{error}");
 }
 
 #[test]

@@ -2,11 +2,14 @@
 
 mod digits_out;
 mod finding;
+mod fusion;
 mod manifold;
 mod nearest_pose;
 mod orientations;
 mod selected_features;
 mod shape_context;
+mod sparsity;
+mod thresholds;
 mod voting_places;
 
 use std::path::{Path, PathBuf};
@@ -36,8 +39,11 @@ pub(crate) struct Experiment {
 pub(crate) const ALL: &[Experiment] = &[
     shape_context::EXPERIMENT,
     orientations::EXPERIMENT,
+    fusion::EXPERIMENT,
     manifold::EXPERIMENT,
     nearest_pose::EXPERIMENT,
+    sparsity::EXPERIMENT,
+    thresholds::EXPERIMENT,
     selected_features::EXPERIMENT,
 ];
 

@@ -1,6 +1,6 @@
 //! One row of the held-out table.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use phalanx_hand::Dof;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -56,6 +56,7 @@ pub(crate) fn rows(
             let guesses = learner.mean.predict(samples.x.as_ref())?;
             let of_method = errors(&estimates);
             let (worst_dof, worst_deg) = of_method.worst();
+        let (theta_z_mae_deg, _) = of_method.of(Dof::ThetaZ).context("θ_Z is compared")?;
             Ok(Row {
                 train: learner.train,
                 train_samples: learner.train_samples,
@@ -63,7 +64,7 @@ pub(crate) fn rows(
                 method: method.name(),
                 views: learner.codebooks.views.len(),
                 mae_deg: of_method.mae(),
-                theta_z_mae_deg: of_method.of(Dof::ThetaZ),
+                theta_z_mae_deg,
                 worst_deg,
                 worst_dof: worst_dof.name(),
                 joint_error_mm: truth.joint_error_mm(estimates.as_ref(), ground),

@@ -1,0 +1,93 @@
+//! Low-level fusion: all views' shape contexts in one histogram.
+
+use phalanx_codebook::{Codebook, Voting};
+use serde::{Deserialize, Serialize};
+
+use crate::{Error, Result, Scratch};
+
+/// One codebook for the shape contexts of all views, which vote into one histogram (§ 2 of the
+/// paper: "the low level approach"). Which view a context came from is lost.
+///
+/// Any number of views can be described: a missing view is one entry fewer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Parts", into = "Parts")]
+pub struct Pooled {
+    codebook: Codebook,
+    voting: Voting,
+}
+
+/// The stored form of a [`Pooled`].
+#[derive(Serialize, Deserialize)]
+struct Parts {
+    codebook: Codebook,
+    voting: Voting,
+}
+
+impl TryFrom<Parts> for Pooled {
+    type Error = Error;
+
+    fn try_from(parts: Parts) -> Result<Self> {
+        Self::from_parts(parts.codebook, parts.voting)
+    }
+}
+
+impl From<Pooled> for Parts {
+    fn from(pooled: Pooled) -> Self {
+        Self { codebook: pooled.codebook, voting: pooled.voting }
+    }
+}
+
+impl Pooled {
+    /// A codebook and how shape contexts vote into it.
+    ///
+    /// # Errors
+    /// A codebook with fewer centres than each shape context votes into.
+    pub fn from_parts(codebook: Codebook, voting: Voting) -> Result<Self> {
+        let (neighbours, centres) = (voting.neighbours, codebook.len());
+        if !(1..=centres).contains(&neighbours) {
+            return Err(Error::Pooled(phalanx_codebook::Error::Neighbours { neighbours, centres }));
+        }
+        Ok(Self { codebook, voting })
+    }
+
+    /// The codebook.
+    pub fn codebook(&self) -> &Codebook {
+        &self.codebook
+    }
+
+    /// How shape contexts vote.
+    pub fn voting(&self) -> Voting {
+        self.voting
+    }
+
+    /// The length of the histogram.
+    pub fn dim(&self) -> usize {
+        self.codebook.len()
+    }
+
+    /// The histogram of one sample's views, written to `x`: non-negative, with a sum of 1.
+    /// `contexts[v]` holds the shape contexts of view v one after the other; their order does not
+    /// matter, and every context counts alike.
+    ///
+    /// # Errors
+    /// No view, an `x` of another length, or what the codebook says of the contexts.
+    pub fn describe<C: AsRef<[f32]>>(
+        &self,
+        contexts: &[C],
+        scratch: &mut Scratch,
+        x: &mut [f64],
+    ) -> Result<()> {
+        if contexts.is_empty() {
+            return Err(Error::NoViews);
+        }
+        if x.len() != self.dim() {
+            return Err(Error::OutputLength { expected: self.dim(), found: x.len() });
+        }
+        let Scratch { voting, pool } = scratch;
+        pool.clear();
+        for view in contexts {
+            pool.extend_from_slice(view.as_ref());
+        }
+        self.codebook.soft_assign(pool, self.voting, voting, x).map_err(Error::Pooled)
+    }
+}
