@@ -119,6 +119,12 @@ pub(crate) struct Chart {
 }
 
 impl Chart {
+    /// What is drawn, in words.
+    pub(crate) fn words(&self) -> String {
+        let names: Vec<&str> = self.series.iter().map(|series| series.name.as_str()).collect();
+        format!("plot of {} against {}: {}", self.y.label, self.x.label, names.join(", "))
+    }
+
     /// The plot. Every series has a colour of its own and is named above, if there are several.
     pub(crate) fn svg(&self) -> Result<String> {
         draw(|area| {
@@ -206,6 +212,11 @@ pub(crate) struct CellMap {
 }
 
 impl CellMap {
+    /// What is drawn, in words.
+    pub(crate) fn words(&self) -> String {
+        format!("map of cells: {} in rows, {} in columns", self.y, self.x)
+    }
+
     pub(crate) fn svg(&self) -> Result<String> {
         draw(|area| {
             let columns = self.rows.first().map_or(0, Vec::len) as i32;

@@ -12,7 +12,7 @@ use clap::builder::PossibleValuesParser;
 use crate::lab::Lab;
 use crate::{files, progress};
 
-pub(crate) use finding::{Figure, Finding, Table, Verdict};
+pub(crate) use finding::{Content, Figure, Finding, Table, Verdict};
 
 /// One of the paper's figures or claims, and how it is put to the test.
 pub(crate) struct Experiment {
