@@ -76,7 +76,8 @@ impl Axis {
     fn tick(&self, place: f64) -> String {
         let value = if self.scale == Scale::Logarithmic { 10_f64.powf(place) } else { place };
         match value.abs() {
-            0.0 => "0".to_owned(),
+            // Ticks are sums of steps: zero is missed by a rounding error.
+            size if size < 1e-12 => "0".to_owned(),
             size if size < 0.01 || size >= 1e5 => format!("{value:.0e}"),
             size if size < 1.0 => trimmed(&format!("{value:.2}")).to_owned(),
             size if size < 10.0 => trimmed(&format!("{value:.1}")).to_owned(),

@@ -1,7 +1,13 @@
 //! The paper's figures and claims, one experiment each, on the same small harness.
 
+mod descriptor_noise;
+mod error_by_turn;
 mod finding;
 mod manifold;
+mod paper_model;
+mod selected_samples;
+mod statistics;
+mod table1;
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +33,13 @@ pub(crate) struct Experiment {
 }
 
 /// In the order of the paper.
-pub(crate) const ALL: &[Experiment] = &[manifold::EXPERIMENT];
+pub(crate) const ALL: &[Experiment] = &[
+    manifold::EXPERIMENT,
+    table1::EXPERIMENT,
+    error_by_turn::EXPERIMENT,
+    selected_samples::EXPERIMENT,
+    descriptor_noise::EXPERIMENT,
+];
 
 #[derive(Args)]
 pub(crate) struct Arguments {
