@@ -14,7 +14,7 @@ use crate::chart::{Axis, Chart, Mark, Series};
 use crate::described::Described;
 use crate::lab::Lab;
 use crate::metrics::{AngleErrors, mean_predictor};
-use crate::table1::{SPLITS, TableMethod};
+use crate::table1::{PaperCounts, SPLITS, TableMethod};
 
 pub(crate) const EXPERIMENT: Experiment = Experiment {
     name: "section-5-2-noise",
@@ -219,7 +219,8 @@ fn of_views(
 /// Of one split, every method's errors under votes, then under deviations; and the mean
 /// predictor's.
 fn one_split(described: &Described, views: &[usize], seed: u64) -> Result<(Vec<[f64; 6]>, f64)> {
-    let trial = Trial::new(described, views, seed, &METHODS)?;
+    let counts = PaperCounts::paper(views.len(), &described.name);
+    let trial = Trial::new(described, views, counts, &METHODS, seed)?;
     let (train, test) = (&trial.halves.train, &trial.halves.test);
     let mae = |estimates: &Mat<f64>| {
         AngleErrors::new(estimates.as_ref(), test.y.as_ref(), &described.active).mae()

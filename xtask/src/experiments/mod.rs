@@ -2,6 +2,7 @@
 
 mod descriptor_noise;
 mod error_by_turn;
+mod estimated_angles;
 mod finding;
 mod manifold;
 mod paper_model;
@@ -39,6 +40,8 @@ pub(crate) const ALL: &[Experiment] = &[
     error_by_turn::EXPERIMENT,
     selected_samples::EXPERIMENT,
     descriptor_noise::EXPERIMENT,
+    estimated_angles::FIG_8,
+    estimated_angles::FIG_9,
 ];
 
 #[derive(Args)]

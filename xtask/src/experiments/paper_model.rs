@@ -1,4 +1,4 @@
-//! The paper's regressors as § 5.2 uses them: at its counts, learnt from one half of a split.
+//! The table's regressors as § 5.2 uses them: at given counts, learnt from one half of a split.
 
 use anyhow::{Context, Result};
 use phalanx_rvm::Model;
@@ -14,15 +14,15 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// The even split of this seed, and every method fitted at the paper's counts.
+    /// The even split of this seed, and every method fitted at these counts.
     pub(super) fn new(
         described: &Described,
         views: &[usize],
-        seed: u64,
+        counts: PaperCounts,
         methods: &[TableMethod],
+        seed: u64,
     ) -> Result<Self> {
         let halves = described.halves(views, seed)?;
-        let counts = PaperCounts::paper(views.len(), &described.name);
         let fit = |method: &TableMethod| -> Result<Model> {
             let regressor = method.regressor(counts).context("it fits nothing")?;
             Ok(regressor.fit(&halves.train.x, &halves.train.y)?.model)

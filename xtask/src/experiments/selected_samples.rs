@@ -12,7 +12,7 @@ use super::{Experiment, Figure, Finding, Table, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
 use crate::described::Described;
 use crate::lab::Lab;
-use crate::table1::TableMethod;
+use crate::table1::{PaperCounts, TableMethod};
 
 pub(crate) const EXPERIMENT: Experiment = Experiment {
     name: "section-5-2-selected",
@@ -118,11 +118,12 @@ fn kept(
     words: &'static str,
     views: &[usize],
 ) -> Result<Vec<Kept>> {
+    let counts = PaperCounts::paper(views.len(), &described.name);
     lab.progress.begin("split, fit", SPLITS as usize);
     let splits: Vec<Result<Vec<OneSplit>>> = (0..SPLITS)
         .into_par_iter()
         .map(|seed| {
-            let trial = Trial::new(described, views, seed, &METHODS)?;
+            let trial = Trial::new(described, views, counts, &METHODS, seed)?;
             let training = trial.halves.train.flexion();
             lab.progress.step();
             Ok(trial.models.iter().map(|m| one_split(&training, m.kept_samples(), seed)).collect())
