@@ -1,5 +1,6 @@
 //! The paper's figures and claims, one experiment each, on the same small harness.
 
+mod cost;
 mod descriptor_noise;
 mod error_by_turn;
 mod estimated_angles;
@@ -42,6 +43,7 @@ pub(crate) const ALL: &[Experiment] = &[
     descriptor_noise::EXPERIMENT,
     estimated_angles::FIG_8,
     estimated_angles::FIG_9,
+    cost::EXPERIMENT,
 ];
 
 #[derive(Args)]

@@ -12,7 +12,7 @@ use super::{Experiment, Figure, Finding, Table, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
 use crate::described::Described;
 use crate::lab::Lab;
-use crate::table1::{PaperCounts, TableMethod};
+use crate::table1::{PaperCounts, SPLITS, TableMethod};
 
 pub(crate) const EXPERIMENT: Experiment = Experiment {
     name: "section-5-2-selected",
@@ -24,8 +24,6 @@ pub(crate) const EXPERIMENT: Experiment = Experiment {
 };
 
 const METHODS: [TableMethod; 3] = [TableMethod::Gauss, TableMethod::Both, TableMethod::Forward];
-/// So many random even splits: each keeps but ten samples.
-const SPLITS: u64 = 10;
 /// Draws of as many samples at random, for what chance alone would give.
 const DRAWS: usize = 1000;
 
