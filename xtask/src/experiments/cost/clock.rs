@@ -7,9 +7,9 @@ use anyhow::Result;
 /// Shortest stretch of time that one reading of the clock covers.
 const STRETCH: Duration = Duration::from_millis(2);
 /// Readings, of which the median counts.
-const READINGS: usize = 7;
+const READINGS: usize = 5;
 
-/// Seconds that short work takes, the median of several readings of as many calls as fill a
+/// Seconds that work takes, the median of several readings of as many calls as fill a
 /// stretch.
 pub(super) fn seconds(mut work: impl FnMut() -> Result<()>) -> Result<f64> {
     let once = seconds_once(&mut work)?.max(1e-9);
@@ -26,7 +26,7 @@ pub(super) fn seconds(mut work: impl FnMut() -> Result<()>) -> Result<f64> {
     Ok(readings[READINGS / 2])
 }
 
-/// Seconds that long work takes, done once.
+/// Seconds that work takes, done once.
 pub(super) fn seconds_once(mut work: impl FnMut() -> Result<()>) -> Result<f64> {
     let begin = Instant::now();
     work()?;

@@ -9,7 +9,7 @@ use phalanx_rvm::{KernelRidge, Lambda, Width};
 use phalanx_segmentation::Silhouette;
 use phalanx_shape_context::{BINS, Orientation, ShapeContexts};
 
-use super::clock::{exponent, seconds, seconds_once};
+use super::clock::{exponent, seconds};
 use super::stages::estimate;
 use crate::described::{Described, Halves};
 use crate::lab::Lab;
@@ -97,17 +97,16 @@ fn codebook(described: &Described, centres: usize) -> Result<Codebook> {
     Ok(Codebook::from_parts((0..centres).flat_map(centre).collect(), BINS, 0.1)?)
 }
 
-/// Describes one silhouette after the other, each with its share of 90 centres; and estimates a
-/// pose from the 90 numbers that come of it.
+/// Describes one silhouette for each camera, and estimates a pose from 90 numbers, however many
+/// cameras they come from.
 fn cameras(described: &Described, outline: &Outline, halves: &Halves) -> Result<Group> {
     let (points, orientation) = (outline.points(300), outline.orientation());
     let mut contexts = ShapeContexts::new();
     let mut scratch = phalanx_codebook::Scratch::default();
-    let describe = |views: usize| {
-        let codebook = codebook(described, 90 / views)?;
-        let mut x = vec![0.0; 90 / views];
+    let mut describe = |cameras: usize, centres: usize| {
+        let (codebook, mut x) = (codebook(described, centres)?, vec![0.0; centres]);
         seconds(|| {
-            for _ in 0..views {
+            for _ in 0..cameras {
                 let seen = contexts.compute(black_box(&points), orientation)?;
                 codebook.soft_assign(seen.values(), Voting::default(), &mut scratch, &mut x)?;
             }
@@ -122,7 +121,8 @@ fn cameras(described: &Described, outline: &Outline, halves: &Halves) -> Result<
     Ok(Group {
         with: "cameras",
         growths: vec![
-            Growth::over("descriptor", &sizes, describe)?,
+            Growth::over("descriptor, 30 centres each", &sizes, |count| describe(count, 30))?,
+            Growth::over("descriptor, 90 shared", &sizes, |count| describe(count, 90 / count))?,
             Growth::over("pose", &sizes, |_| estimate(&model, &x))?,
         ],
     })
@@ -174,7 +174,7 @@ fn training_samples(halves: &Halves) -> Result<Group> {
         Growth::over(method.name(), &sizes, |count| {
             let first = |of: &Mat<f64>| of.subcols(0, count).to_owned();
             let (x, y) = (first(&halves.train.x), first(&halves.train.y));
-            seconds_once(|| {
+            seconds(|| {
                 black_box(regressor.fit(&x, &y)?);
                 Ok(())
             })
