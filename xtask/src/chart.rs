@@ -78,7 +78,7 @@ impl Axis {
         match value.abs() {
             // Ticks are sums of steps: zero is missed by a rounding error.
             size if size < 1e-12 => "0".to_owned(),
-            size if size < 0.01 || size >= 1e5 => format!("{value:.0e}"),
+            size if !(0.01..1e5).contains(&size) => format!("{value:.0e}"),
             size if size < 1.0 => trimmed(&format!("{value:.2}")).to_owned(),
             size if size < 10.0 => trimmed(&format!("{value:.1}")).to_owned(),
             _ => format!("{value:.0}"),

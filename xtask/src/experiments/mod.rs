@@ -86,13 +86,10 @@ pub(crate) fn write(experiment: &Experiment, finding: &Finding, folder: &Path) -
 /// What a terminal shows.
 fn text(experiment: &Experiment, finding: &Finding) -> String {
     let Experiment { place, title, claim, .. } = experiment;
-    let mut text = format!("# {place}: {title}\n\nThe paper: {claim}\n\n");
-    text += &format!("Verdict: {}. {}\n\n", finding.verdict.words(), finding.sentence);
-    for note in &finding.notes {
-        text += &format!("{note}\n\n");
-    }
-    for table in &finding.tables {
-        text += &format!("{}\n", table.markdown());
-    }
+    let (verdict, sentence) = (finding.verdict.words(), &finding.sentence);
+    let mut text =
+        format!("# {place}: {title}\n\nThe paper: {claim}\n\nVerdict: {verdict}. {sentence}\n\n");
+    text.extend(finding.notes.iter().map(|note| format!("{note}\n\n")));
+    text.extend(finding.tables.iter().map(|table| format!("{}\n", table.markdown())));
     text
 }

@@ -25,7 +25,7 @@ pub(crate) fn page(sections: &[Section<'_>]) -> String {
     let rows: String = sections.iter().map(summary_row).collect();
     let body: String = sections.iter().map(section).collect();
     format!(
-        r##"<!doctype html>
+        r#"<!doctype html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
@@ -66,7 +66,7 @@ nothing is wrong.</p>
 {body}</main>
 </body>
 </html>
-"##
+"#
     )
 }
 
@@ -133,12 +133,10 @@ fn figure(place: &str, figure: &Figure) -> String {
 fn table(table: &Table) -> String {
     let figures: Vec<bool> = (0..table.header.len()).map(|k| holds_figures(table, k)).collect();
     let class = |column: usize| if figures[column] { " class=\"figure\"" } else { "" };
-    let header: String = table
-        .header
-        .iter()
-        .enumerate()
-        .map(|(k, cell)| format!("<th scope=\"col\"{}>{}</th>", class(k), escaped(cell)))
-        .collect();
+    let heading = |(column, cell): (usize, &String)| {
+        format!("<th scope=\"col\"{}>{}</th>", class(column), escaped(cell))
+    };
+    let header: String = table.header.iter().enumerate().map(heading).collect();
     let row = |cells: &Vec<String>| {
         let cell = |(k, cell): (usize, &String)| match k {
             0 => format!("<th scope=\"row\">{}</th>", escaped(cell)),

@@ -35,7 +35,7 @@ pub(super) struct Held {
 }
 
 pub(super) struct Stages {
-    pub(super) stages: Vec<Stage>,
+    pub(super) timed: Vec<Stage>,
     pub(super) held: Vec<Held>,
     /// Seconds to describe one picture, and to estimate a pose by lin, gauss and both.
     pub(super) describe: f64,
@@ -58,7 +58,7 @@ pub(super) fn run(lab: &Lab<'_>) -> Result<(Stages, Halves)> {
     let describe = describe(&photographs[..1], &halves)?;
     let frame = self::describe(&photographs, &halves)? + estimate[1];
     let stage = |name, paper, here| Stage { name, paper, here };
-    let stages = vec![
+    let timed = vec![
         stage("descriptor of one picture", Some(0.170), describe),
         stage("pose, linear, 32 features", Some(7.2e-6), estimate[0]),
         stage("pose, Gaussian, 38 samples, all 90 features", Some(35.7e-6), estimate[1]),
@@ -71,7 +71,7 @@ pub(super) fn run(lab: &Lab<'_>) -> Result<(Stages, Halves)> {
     ];
     let contexts = described.contexts.iter().flatten().map(Vec::len).sum::<usize>();
     let held = held(contexts, &halves, &models);
-    Ok((Stages { stages, held, describe, estimate, codebooks }, halves))
+    Ok((Stages { timed, held, describe, estimate, codebooks }, halves))
 }
 
 /// The paper's three models, and the seconds that each took.

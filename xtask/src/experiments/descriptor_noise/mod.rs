@@ -86,7 +86,7 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
             sentences.join("; ")
         ),
         notes: notes(&settings),
-        tables: settings.chunks(settings.len() / 4).map(|settings| table(settings)).collect(),
+        tables: settings.chunks(settings.len() / 4).map(table).collect(),
         figures: settings.iter().map(|setting| figure(setting)).collect::<Result<_>>()?,
         json: json!({ "rows": curves.iter().flat_map(rows).collect::<Vec<_>>() }),
     })

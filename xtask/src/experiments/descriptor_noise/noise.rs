@@ -55,7 +55,9 @@ impl Noise {
                     *part = (*part + level * deviation * normal(random)).max(0.0);
                 }
                 let sum: f64 = histogram.iter().sum();
-                histogram.iter_mut().for_each(|part| *part /= sum);
+                for part in histogram {
+                    *part /= sum;
+                }
             }
         }
     }
