@@ -76,9 +76,9 @@ impl Axis {
     fn tick(&self, place: f64) -> String {
         let value = if self.scale == Scale::Logarithmic { 10_f64.powf(place) } else { place };
         match value.abs() {
-            // Ticks are sums of steps, which may miss 0 by their rounding.
-            size if size < 1e-9 => "0".to_owned(),
-            size if size < 0.01 || size >= 1e5 => format!("{value:.0e}"),
+            // Ticks are sums of steps: zero is missed by a rounding error.
+            size if size < 1e-12 => "0".to_owned(),
+            size if !(0.01..1e5).contains(&size) => format!("{value:.0e}"),
             size if size < 1.0 => trimmed(&format!("{value:.2}")).to_owned(),
             size if size < 10.0 => trimmed(&format!("{value:.1}")).to_owned(),
             _ => format!("{value:.0}"),
@@ -122,6 +122,12 @@ pub(crate) struct Chart {
 }
 
 impl Chart {
+    /// What is drawn, in words.
+    pub(crate) fn words(&self) -> String {
+        let names: Vec<&str> = self.series.iter().map(|series| series.name.as_str()).collect();
+        format!("plot of {} against {}: {}", self.y.label, self.x.label, names.join(", "))
+    }
+
     /// The plot. Every series has a colour of its own and is named above, if there are several.
     pub(crate) fn svg(&self) -> Result<String> {
         draw(|area| {
@@ -221,6 +227,11 @@ const CELLS: (i32, i32) = (86, 8);
 const CELLS_SIZE: (i32, i32) = (SIZE.0 as i32 - CELLS.0 - 10, SIZE.1 as i32 - CELLS.1 - 46);
 
 impl CellMap {
+    /// What is drawn, in words.
+    pub(crate) fn words(&self) -> String {
+        format!("map of cells: {} in rows, {} in columns", self.y, self.x)
+    }
+
     pub(crate) fn svg(&self) -> Result<String> {
         let columns = self.rows.first().map_or(0, Vec::len);
         let rows = self.rows.len();

@@ -4,7 +4,7 @@ use anyhow::Result;
 use faer::Mat;
 use phalanx::PoseContexts;
 use phalanx_codebook::KMeans;
-use phalanx_hand::{Dof, Pose};
+use phalanx_hand::{Digit, Dof, Pose};
 use phalanx_multiview::{Concatenation, Vocabulary};
 use phalanx_shape_context::BINS;
 
@@ -24,6 +24,25 @@ pub(crate) struct Described {
 pub(crate) struct Samples {
     pub(crate) x: Mat<f64>,
     pub(crate) y: Mat<f64>,
+}
+
+impl Samples {
+    /// One angle of every pose, degrees.
+    pub(crate) fn degrees(&self, dof: Dof) -> Vec<f64> {
+        self.y.row(dof.index()).iter().map(|value| value.to_degrees()).collect()
+    }
+
+    /// The mean of the fingers' flexions of every pose, degrees; without the thumb's, which bends
+    /// by another plan.
+    pub(crate) fn flexion(&self) -> Vec<f64> {
+        let flexing: Vec<Vec<f64>> = [Digit::Index, Digit::Middle, Digit::Ring, Digit::Little]
+            .into_iter()
+            .flat_map(|digit| digit.dofs().into_iter().skip(1))
+            .map(|dof| self.degrees(dof))
+            .collect();
+        let mean = |i| flexing.iter().map(|angles| angles[i]).sum::<f64>() / flexing.len() as f64;
+        (0..self.y.ncols()).map(mean).collect()
+    }
 }
 
 /// The two halves of a split. Codebooks see the training half only.

@@ -22,6 +22,7 @@ mod plate;
 mod postures;
 mod principal_axes;
 mod progress;
+mod report;
 mod saturation;
 mod scale;
 mod scene_list;
@@ -62,6 +63,8 @@ enum Command {
     EvalHeldOut(held_out::Arguments),
     /// Put one of the paper's figures or claims to the test.
     Experiment(experiments::Arguments),
+    /// Run every experiment and write one page that a reader of the paper can follow.
+    Report(report::Arguments),
     /// Regenerate the files in fixtures/, or check that they are as generated.
     Fixtures(fixtures::Arguments),
     /// Train the skin model that the segmentation crate ships.
@@ -76,7 +79,7 @@ enum Command {
 
 fn main() -> ExitCode {
     match run(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(error) => {
             eprintln!("error: {error:#}");
             ExitCode::from(2)
@@ -84,21 +87,28 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<()> {
+fn run(arguments: &Arguments) -> Result<ExitCode> {
     // faer's eigenvalues depend in their last bits on how many threads compute them.
     faer::set_global_parallelism(faer::Par::Seq);
     let threads = arguments.threads.unwrap_or(0);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.context("starting worker threads")?.install(|| match &arguments.command {
-        Command::Train(arguments) => train::run(arguments),
-        Command::Merge(arguments) => merge::run(arguments),
-        Command::EvalTable1(arguments) => table1::run(arguments),
-        Command::EvalHeldOut(arguments) => held_out::run(arguments),
-        Command::Experiment(arguments) => experiments::run(arguments),
-        Command::Fixtures(arguments) => fixtures::run(arguments),
-        Command::SkinModel(arguments) => skin_model::run(arguments),
-        Command::ContactSheet(arguments) => contact_sheet::run(arguments),
-        Command::Pictures(arguments) => pictures::run(arguments),
-        Command::Performance(arguments) => performance::run(arguments),
-    })
+    pool.context("starting worker threads")?.install(|| start(&arguments.command))
+}
+
+/// Runs a command; its exit code tells whether all of it was done.
+fn start(command: &Command) -> Result<ExitCode> {
+    match command {
+        Command::Train(arguments) => train::run(arguments)?,
+        Command::Merge(arguments) => merge::run(arguments)?,
+        Command::EvalTable1(arguments) => table1::run(arguments)?,
+        Command::EvalHeldOut(arguments) => return held_out::run(arguments),
+        Command::Experiment(arguments) => experiments::run(arguments)?,
+        Command::Report(arguments) => return report::run(arguments),
+        Command::Fixtures(arguments) => fixtures::run(arguments)?,
+        Command::SkinModel(arguments) => skin_model::run(arguments)?,
+        Command::ContactSheet(arguments) => contact_sheet::run(arguments)?,
+        Command::Pictures(arguments) => pictures::run(arguments)?,
+        Command::Performance(arguments) => performance::run(arguments)?,
+    }
+    Ok(ExitCode::SUCCESS)
 }

@@ -80,6 +80,8 @@ impl Table {
 /// A picture with its caption.
 pub(crate) struct Figure {
     pub(crate) caption: String,
+    /// What is drawn, for those who cannot see it.
+    pub(crate) alternative: String,
     pub(crate) content: Content,
 }
 
@@ -90,21 +92,26 @@ pub(crate) enum Content {
 
 impl Figure {
     pub(crate) fn chart(caption: impl Display, chart: &Chart) -> Result<Self> {
-        Ok(Self { caption: caption.to_string(), content: Content::Svg(chart.svg()?) })
+        Ok(Self::new(caption, chart.words(), Content::Svg(chart.svg()?)))
     }
 
     pub(crate) fn cells(caption: impl Display, cells: &CellMap) -> Result<Self> {
-        Ok(Self { caption: caption.to_string(), content: Content::Svg(cells.svg()?) })
+        Ok(Self::new(caption, cells.words(), Content::Svg(cells.svg()?)))
     }
 
-    pub(crate) fn svg(caption: impl Display, svg: String) -> Self {
-        Self { caption: caption.to_string(), content: Content::Svg(svg) }
+    pub(crate) fn svg(caption: impl Display, words: impl Display, svg: String) -> Self {
+        Self::new(caption, words.to_string(), Content::Svg(svg))
     }
 
     pub(crate) fn picture(caption: impl Display, picture: &RgbImage) -> Result<Self> {
         let mut png = std::io::Cursor::new(Vec::new());
         picture.write_to(&mut png, ImageFormat::Png)?;
-        Ok(Self { caption: caption.to_string(), content: Content::Png(png.into_inner()) })
+        let words = format!("a picture of {} × {} pixels", picture.width(), picture.height());
+        Ok(Self::new(caption, words, Content::Png(png.into_inner())))
+    }
+
+    fn new(caption: impl Display, alternative: String, content: Content) -> Self {
+        Self { caption: caption.to_string(), alternative, content }
     }
 
     /// The file's extension, its MIME type, and its bytes.

@@ -1,12 +1,11 @@
 //! Fig. 3: the first two principal axes of the descriptors.
 
 use anyhow::Result;
-use phalanx_hand::{Digit, Dof};
+use phalanx_hand::Dof;
 use serde_json::json;
 
 use super::{Experiment, Figure, Finding, Table, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
-use crate::described::Samples;
 use crate::lab::Lab;
 use crate::principal_axes::PrincipalAxes;
 
@@ -31,7 +30,7 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
     for (words, views) in lab.one_and_all()? {
         let (_, samples) = described.whole(&views, 0)?;
         let axes = PrincipalAxes::of(samples.x.as_ref())?;
-        let (turn, flexion) = (degrees(&samples, Dof::ThetaZ), flexion(&samples));
+        let (turn, flexion) = (samples.degrees(Dof::ThetaZ), samples.flexion());
         let mut correlations = Vec::new();
         for axis in 0..2 {
             let scores = axes.scores(axis);
@@ -86,23 +85,6 @@ fn scatter(axes: &PrincipalAxes, theta_z: &[f64]) -> Chart {
         y: Axis::linear("second principal axis"),
         series: DRAWN_DEG.map(at).into(),
     }
-}
-
-/// One number of every pose, degrees.
-fn degrees(samples: &Samples, dof: Dof) -> Vec<f64> {
-    samples.y.row(dof.index()).iter().map(|value| value.to_degrees()).collect()
-}
-
-/// The mean of the fingers' flexions of every pose, degrees; the thumb's apart, which bends by
-/// another plan.
-fn flexion(samples: &Samples) -> Vec<f64> {
-    let flexing: Vec<Vec<f64>> = [Digit::Index, Digit::Middle, Digit::Ring, Digit::Little]
-        .into_iter()
-        .flat_map(|digit| digit.dofs().into_iter().skip(1))
-        .map(|dof| degrees(samples, dof))
-        .collect();
-    let mean = |i| flexing.iter().map(|angles| angles[i]).sum::<f64>() / flexing.len() as f64;
-    (0..samples.y.ncols()).map(mean).collect()
 }
 
 /// Pearson's correlation.

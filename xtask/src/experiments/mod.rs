@@ -1,14 +1,22 @@
 //! The paper's figures and claims, one experiment each, on the same small harness.
 
+mod cost;
+mod descriptor_noise;
 mod digits_out;
+mod error_by_turn;
+mod estimated_angles;
 mod finding;
 mod fusion;
 mod manifold;
 mod nearest_pose;
 mod orientations;
+mod paper_model;
 mod selected_features;
+mod selected_samples;
 mod shape_context;
 mod sparsity;
+mod statistics;
+mod table1;
 mod thresholds;
 mod voting_places;
 
@@ -21,7 +29,7 @@ use clap::builder::PossibleValuesParser;
 use crate::lab::Lab;
 use crate::{files, progress};
 
-pub(crate) use finding::{Figure, Finding, Table, Verdict};
+pub(crate) use finding::{Content, Figure, Finding, Table, Verdict};
 
 /// One of the paper's figures or claims, and how it is put to the test.
 pub(crate) struct Experiment {
@@ -44,7 +52,14 @@ pub(crate) const ALL: &[Experiment] = &[
     nearest_pose::EXPERIMENT,
     sparsity::EXPERIMENT,
     thresholds::EXPERIMENT,
+    table1::EXPERIMENT,
+    error_by_turn::EXPERIMENT,
+    selected_samples::EXPERIMENT,
+    descriptor_noise::EXPERIMENT,
     selected_features::EXPERIMENT,
+    estimated_angles::FIG_8,
+    estimated_angles::FIG_9,
+    cost::EXPERIMENT,
 ];
 
 #[derive(Args)]
@@ -87,13 +102,10 @@ pub(crate) fn write(experiment: &Experiment, finding: &Finding, folder: &Path) -
 /// What a terminal shows.
 fn text(experiment: &Experiment, finding: &Finding) -> String {
     let Experiment { place, title, claim, .. } = experiment;
-    let mut text = format!("# {place}: {title}\n\nThe paper: {claim}\n\n");
-    text += &format!("Verdict: {}. {}\n\n", finding.verdict.words(), finding.sentence);
-    for note in &finding.notes {
-        text += &format!("{note}\n\n");
-    }
-    for table in &finding.tables {
-        text += &format!("{}\n", table.markdown());
-    }
+    let (verdict, sentence) = (finding.verdict.words(), &finding.sentence);
+    let mut text =
+        format!("# {place}: {title}\n\nThe paper: {claim}\n\nVerdict: {verdict}. {sentence}\n\n");
+    text.extend(finding.notes.iter().map(|note| format!("{note}\n\n")));
+    text.extend(finding.tables.iter().map(|table| format!("{}\n", table.markdown())));
     text
 }

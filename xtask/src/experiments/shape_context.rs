@@ -240,6 +240,7 @@ fn drawn(subject: &Subject, seen: &Seen, tip: usize) -> Result<[Figure; 2]> {
                      μ = {:.1} px.",
                 subject.words, seen.mean_distance
             ),
+            "log-polar plate of five rings and twelve sectors, darker where more contour lies",
             plate::svg(seen.context(tip)),
         ),
     ])

@@ -19,6 +19,8 @@ use crate::files;
 pub(crate) struct Masks {
     poses: Vec<Pose>,
     contexts: Vec<PoseContexts>,
+    /// How many frames could not be described.
+    pub(crate) left_out: usize,
 }
 
 impl Masks {
@@ -47,7 +49,8 @@ impl Masks {
         if poses.is_empty() {
             bail!("{}: none of {} frames can be described", folder.display(), frames.len());
         }
-        Ok(Self { poses, contexts })
+        let left_out = frames.len() - poses.len();
+        Ok(Self { poses, contexts, left_out })
     }
 
     /// Every learner's every method on them.

@@ -10,6 +10,7 @@ mod row;
 mod timing;
 
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
@@ -104,32 +105,42 @@ struct Ground {
     rule: OrientationRule,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+/// Prints the table or the curves; the exit code tells whether every frame of `--masks` is in.
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let ground = Ground {
         rig: files::rig(arguments.rig.as_deref())?,
         hand: files::hand(arguments.hand.as_deref())?,
         rule: arguments.orientation.map_or_else(OrientationRule::default, Orientation::rule),
     };
     let bar = progress::Bar::new();
+    let masks =
+        arguments.masks.as_deref().map(|folder| Masks::read(folder, &ground)).transpose()?;
     let (text, results) = if arguments.curves {
         let curves = curves::points(&ground, &bar)?;
         (curves::tables(&curves), Results { rows: Vec::new(), curves })
     } else {
-        let rows = rows(arguments, &ground, &bar)?;
+        let rows = rows(arguments, &ground, masks.as_ref(), &bar)?;
         (print::tables(&rows), Results { rows, curves: Vec::new() })
     };
     drop(bar);
     files::print(&text)?;
-    let Some(path) = &arguments.json else { return Ok(()) };
-    let mut json = serde_json::to_vec_pretty(&results)?;
-    json.push(b'\n');
-    files::write_whole(path, &json)
+    if let Some(path) = &arguments.json {
+        let mut json = serde_json::to_vec_pretty(&results)?;
+        json.push(b'\n');
+        files::write_whole(path, &json)?;
+    }
+    let complete = masks.is_none_or(|masks| masks.left_out == 0);
+    Ok(if complete { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 
-fn rows(arguments: &Arguments, ground: &Ground, progress: &dyn Progress) -> Result<Vec<Row>> {
+fn rows(
+    arguments: &Arguments,
+    ground: &Ground,
+    masks: Option<&Masks>,
+    progress: &dyn Progress,
+) -> Result<Vec<Row>> {
     let motion = arguments.poses.as_deref().map(files::poses).transpose()?;
     let motion = motion.map_or_else(Vec::new, |table| table.poses);
-    let masks = arguments.masks.as_deref().map(|folder| Masks::read(folder, ground)).transpose()?;
     let tests = tests(arguments)?;
     let (views, methods) = (views(&ground.rig), methods(arguments));
     let mut learners = Vec::new();
@@ -141,7 +152,7 @@ fn rows(arguments: &Arguments, ground: &Ground, progress: &dyn Progress) -> Resu
         let set = test.set(&ground.rig, &ground.hand, &motion);
         rows.extend(test_on(&set, &learners, ground, progress)?);
     }
-    if let Some(masks) = &masks {
+    if let Some(masks) = masks {
         rows.extend(masks.test(&learners, ground)?);
     }
     if arguments.timing {

@@ -56,7 +56,7 @@ pub(crate) fn rows(
             let guesses = learner.mean.predict(samples.x.as_ref())?;
             let of_method = errors(&estimates);
             let (worst_dof, worst_deg) = of_method.worst();
-        let (theta_z_mae_deg, _) = of_method.of(Dof::ThetaZ).context("θ_Z is compared")?;
+            let (theta_z_mae_deg, _) = of_method.of(Dof::ThetaZ).context("θ_Z is compared")?;
             Ok(Row {
                 train: learner.train,
                 train_samples: learner.train_samples,

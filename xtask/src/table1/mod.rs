@@ -23,11 +23,12 @@ use paper::PaperRow;
 use trial::Outcome;
 
 pub(crate) use method::{Counts as PaperCounts, Method as TableMethod};
+pub(crate) use print::{HEADER, legend, lines};
 
 /// The camera of the single-view rows.
 const SINGLE_VIEW: &str = "top";
 /// Every figure is the mean over this many random even splits.
-const SPLITS: u64 = 5;
+pub(crate) const SPLITS: u64 = 5;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -100,6 +101,29 @@ pub(crate) fn evaluate(
     progress: &dyn Progress,
 ) -> Result<Vec<Row>> {
     let most_views = views.iter().map(Vec::len).max().unwrap_or(0);
+    run_jobs(data_set, views, |count| jobs(data_set, count, most_views), progress)
+}
+
+/// The rows of the selecting methods at the counts of `counted_as` views, for one choice of
+/// cameras after the other.
+pub(crate) fn evaluate_equally(
+    data_set: &Described,
+    views: &[Vec<usize>],
+    counted_as: usize,
+    progress: &dyn Progress,
+) -> Result<Vec<Row>> {
+    let counts = counts(data_set, counted_as);
+    let job = |method| Job { method, counts, rows: vec!["equal"] };
+    run_jobs(data_set, views, |_| Method::COUNTED.map(job).into(), progress)
+}
+
+/// The rows of the jobs of each number of views.
+fn run_jobs(
+    data_set: &Described,
+    views: &[Vec<usize>],
+    jobs: impl Fn(usize) -> Vec<Job> + Sync,
+    progress: &dyn Progress,
+) -> Result<Vec<Row>> {
     let runs: Vec<(&[usize], u64)> =
         views.iter().flat_map(|v| (0..SPLITS).map(move |split| (v.as_slice(), split))).collect();
     progress.begin("split, cluster, fit, test", runs.len());
@@ -107,8 +131,7 @@ pub(crate) fn evaluate(
         .par_iter()
         .map(|&(views, split)| {
             let halves = data_set.halves(views, split)?;
-            let outcomes =
-                trial::run(&halves, &data_set.active, &jobs(data_set, views.len(), most_views));
+            let outcomes = trial::run(&halves, &data_set.active, &jobs(views.len()));
             progress.step();
             outcomes
         })
@@ -126,12 +149,9 @@ struct Job {
     rows: Vec<&'static str>,
 }
 
-/// What is fitted on each split: every method at the paper's counts (of samples, as many as there
-/// are), and the selecting ones at the counts of the most views too, where those differ.
+/// What is fitted on each split: every method at the paper's counts, and the selecting ones at the counts of the most views too, where those differ.
 fn jobs(data_set: &Described, views: usize, most_views: usize) -> Vec<Job> {
-    let train_samples = data_set.poses.len().div_ceil(2);
-    let counts = |views| Counts::paper(views, &data_set.name).at_most(train_samples);
-    let (paper, equal) = (counts(views), counts(most_views));
+    let (paper, equal) = (counts(data_set, views), counts(data_set, most_views));
     let mut jobs = Vec::new();
     for method in Method::COUNTED {
         if paper == equal {
@@ -144,6 +164,11 @@ fn jobs(data_set: &Described, views: usize, most_views: usize) -> Vec<Job> {
     let uncounted = |method| Job { method, counts: paper, rows: vec!["paper"] };
     jobs.extend(Method::UNCOUNTED.map(uncounted));
     jobs
+}
+
+/// The paper's counts for a number of views; of samples, as many as there are.
+fn counts(data_set: &Described, views: usize) -> Counts {
+    Counts::paper(views, &data_set.name).at_most(data_set.poses.len().div_ceil(2))
 }
 
 /// The rows of one number of views: each job's mean over the splits.

@@ -8,7 +8,7 @@ use super::paper::PaperRow;
 use super::{Row, SPLITS};
 use crate::files;
 
-const HEADER: [&str; 12] = [
+pub(crate) const HEADER: [&str; 12] = [
     "views",
     "data set",
     "kernels",
@@ -23,31 +23,44 @@ const HEADER: [&str; 12] = [
     "paper which",
 ];
 
-pub(crate) fn print(rows: &[Row]) -> Result<()> {
-    let of = |counts: &'static str| table(rows.iter().filter(move |row| row.counts == counts));
-    files::print(&format!(
-        "# Table 1\n\nPrinted by `cargo xtask eval-table1`: means of {SPLITS} random even splits, in degrees over the\n\
+/// How the cells are to be read.
+pub(crate) fn legend() -> String {
+    format!(
+        "means of {SPLITS} random even splits, in degrees over the\n\
          active angles. Ratio: avg. over the error of predicting the training mean. ~: to which of three\n\
-         cells the paper's figure belongs is a guess; ·: not legible.\n\n\
+         cells the paper's figure belongs is a guess; ·: not legible."
+    )
+}
+
+pub(crate) fn print(rows: &[Row]) -> Result<()> {
+    files::print(&format!(
+        "# Table 1\n\nPrinted by `cargo xtask eval-table1`: {}\n\n\
          ## At the paper's counts\n\n{}\n\n## At equal counts: those of three views\n\n{}\n",
-        of("paper"),
-        of("equal")
+        legend(),
+        table(rows, "paper"),
+        table(rows, "equal")
     ))
 }
 
-fn table<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {
+fn table(rows: &[Row], counts: &str) -> Table {
     let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN).set_header(HEADER);
-    let mut block = None;
-    for row in rows {
+    table.load_style(presets::ASCII_MARKDOWN).set_header(HEADER).add_rows(lines(rows, counts));
+    table
+}
+
+/// The table's lines at the paper's or at equal counts, each block after its mean predictor.
+pub(crate) fn lines<'a>(rows: impl IntoIterator<Item = &'a Row>, counts: &str) -> Vec<Vec<String>> {
+    let mut lines = Vec::new();
+    let mut block: Option<(usize, &str)> = None;
+    for row in rows.into_iter().filter(|row| row.counts == counts) {
         let this = (row.views, row.data_set.as_str());
         if block != Some(this) {
             block = Some(this);
-            table.add_row(mean_predictor_cells(row));
+            lines.push(mean_predictor_cells(row));
         }
-        table.add_row(cells(row));
+        lines.push(cells(row));
     }
-    table
+    lines
 }
 
 fn mean_predictor_cells(row: &Row) -> Vec<String> {

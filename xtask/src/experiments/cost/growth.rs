@@ -1,0 +1,200 @@
+//! How the stages grow with the sizes of what they work on.
+
+use std::hint::black_box;
+
+use anyhow::{Context, Result};
+use faer::Mat;
+use phalanx_codebook::{Codebook, Voting};
+use phalanx_rvm::{KernelRidge, Lambda, Width};
+use phalanx_segmentation::Silhouette;
+use phalanx_shape_context::{BINS, Orientation, ShapeContexts};
+
+use super::clock::{exponent, seconds};
+use super::stages::estimate;
+use crate::described::{Described, Halves};
+use crate::lab::Lab;
+use crate::table1::{PaperCounts, TableMethod};
+
+/// Times of one stage at rising sizes.
+pub(super) struct Growth {
+    pub(super) stage: &'static str,
+    /// Size and seconds.
+    pub(super) points: Vec<(f64, f64)>,
+}
+
+/// What a group of stages grows with.
+pub(super) struct Group {
+    pub(super) with: &'static str,
+    pub(super) growths: Vec<Growth>,
+}
+
+impl Growth {
+    pub(super) fn exponent(&self) -> f64 {
+        exponent(&self.points)
+    }
+
+    fn over(
+        stage: &'static str,
+        sizes: &[usize],
+        time: impl FnMut(usize) -> Result<f64>,
+    ) -> Result<Self> {
+        let times = sizes.iter().copied().map(time).collect::<Result<Vec<_>>>()?;
+        let points = sizes.iter().map(|size| *size as f64).zip(times).collect();
+        Ok(Self { stage, points })
+    }
+}
+
+pub(super) fn run(lab: &Lab<'_>, halves: &Halves) -> Result<Vec<Group>> {
+    let described = lab.complex()?;
+    let outline = Outline::of(lab)?;
+    Ok(vec![
+        cameras(described, &outline, halves)?,
+        contour_points(described, &outline)?,
+        centres(described)?,
+        training_samples(halves)?,
+        kept_samples(halves)?,
+    ])
+}
+
+/// A contour of which any number of points can be taken.
+struct Outline {
+    points: Vec<[f64; 2]>,
+    forearm_end: [f64; 2],
+}
+
+impl Outline {
+    fn of(lab: &Lab<'_>) -> Result<Self> {
+        let camera = &lab.rig.cameras[lab.single()?];
+        let pose = &lab.complex()?.poses[0];
+        let rest = lab.rig.volume.rest_frame();
+        let mask = phalanx::draw_silhouette(camera, &lab.hand, pose, &rest)?;
+        let Silhouette { contour, forearm, .. } = Silhouette::from_mask(&mask)?;
+        Ok(Self { points: contour.points, forearm_end: forearm.end })
+    }
+
+    /// So many points, evenly along the list of the contour's.
+    fn points(&self, count: usize) -> Vec<[f64; 2]> {
+        let last = self.points.len() - 1;
+        let point = |k: usize| {
+            let place = last as f64 * k as f64 / count as f64;
+            let (before, part) = (place as usize, place.fract());
+            let [from, to] = [self.points[before], self.points[before + 1]];
+            [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]))
+        };
+        (0..count).map(point).collect()
+    }
+
+    fn orientation(&self) -> Orientation {
+        Orientation::HandAxis { forearm_end: self.forearm_end }
+    }
+}
+
+/// A codebook of shape contexts from all over the data set; what voting costs does not depend on
+/// which they are.
+fn codebook(described: &Described, centres: usize) -> Result<Codebook> {
+    let every = described.poses.len() / centres;
+    let centre = |k: usize| described.contexts[k * every][0][..BINS].iter().copied();
+    Ok(Codebook::from_parts((0..centres).flat_map(centre).collect(), BINS, 0.1)?)
+}
+
+/// Describes one silhouette for each camera, and estimates a pose from 90 numbers, however many
+/// cameras they come from.
+fn cameras(described: &Described, outline: &Outline, halves: &Halves) -> Result<Group> {
+    let (points, orientation) = (outline.points(300), outline.orientation());
+    let mut contexts = ShapeContexts::new();
+    let mut scratch = phalanx_codebook::Scratch::default();
+    let mut describe = |cameras: usize, centres: usize| {
+        let (codebook, mut x) = (codebook(described, centres)?, vec![0.0; centres]);
+        seconds(|| {
+            for _ in 0..cameras {
+                let seen = contexts.compute(black_box(&points), orientation)?;
+                codebook.soft_assign(seen.values(), Voting::default(), &mut scratch, &mut x)?;
+            }
+            Ok(())
+        })
+    };
+    let counts = PaperCounts::paper(3, &described.name);
+    let regressor = TableMethod::Gauss.regressor(counts).context("it fits nothing")?;
+    let model = regressor.fit(&halves.train.x, &halves.train.y)?.model;
+    let x: Vec<f64> = halves.test.x.col(0).iter().copied().collect();
+    let sizes = [1, 2, 3, 5, 6];
+    Ok(Group {
+        with: "cameras",
+        growths: vec![
+            Growth::over("descriptor, 30 centres each", &sizes, |count| describe(count, 30))?,
+            Growth::over("descriptor, 90 shared", &sizes, |count| describe(count, 90 / count))?,
+            Growth::over("pose", &sizes, |_| estimate(&model, &x))?,
+        ],
+    })
+}
+
+fn contour_points(described: &Described, outline: &Outline) -> Result<Group> {
+    let mut contexts = ShapeContexts::new();
+    let sizes = [100, 200, 400, 800];
+    let compute = |count: usize| {
+        let points = outline.points(count);
+        seconds(|| {
+            black_box(contexts.compute(black_box(&points), outline.orientation())?);
+            Ok(())
+        })
+    };
+    let shapes = Growth::over("shape contexts", &sizes, compute)?;
+    let (codebook, mut x) = (codebook(described, 30)?, vec![0.0; 30]);
+    let mut scratch = phalanx_codebook::Scratch::default();
+    let vote = |count: usize| {
+        let seen = contexts.compute(&outline.points(count), outline.orientation())?;
+        let values = seen.values().to_vec();
+        seconds(|| {
+            Ok(codebook.soft_assign(black_box(&values), Voting::default(), &mut scratch, &mut x)?)
+        })
+    };
+    let votes = Growth::over("votes", &sizes, vote)?;
+    Ok(Group { with: "contour points", growths: vec![shapes, votes] })
+}
+
+fn centres(described: &Described) -> Result<Group> {
+    let samples = &described.contexts[0][0];
+    let mut scratch = phalanx_codebook::Scratch::default();
+    let vote = |count: usize| {
+        let (codebook, mut x) = (codebook(described, count)?, vec![0.0; count]);
+        seconds(|| {
+            Ok(codebook.soft_assign(black_box(samples), Voting::default(), &mut scratch, &mut x)?)
+        })
+    };
+    let growths = vec![Growth::over("votes", &[30, 60, 120, 240, 360], vote)?];
+    Ok(Group { with: "K", growths })
+}
+
+fn training_samples(halves: &Halves) -> Result<Group> {
+    let all = halves.train.x.ncols();
+    let sizes = [all / 8, all / 4, all / 2, all];
+    let counts = PaperCounts::paper(3, "complex");
+    let fit = |method: TableMethod| {
+        let regressor = method.regressor(counts).context("it fits nothing")?;
+        Growth::over(method.name(), &sizes, |count| {
+            let first = |of: &Mat<f64>| of.subcols(0, count).to_owned();
+            let (x, y) = (first(&halves.train.x), first(&halves.train.y));
+            seconds(|| {
+                black_box(regressor.fit(&x, &y)?);
+                Ok(())
+            })
+        })
+    };
+    let methods = [TableMethod::Lin, TableMethod::Gauss, TableMethod::Both];
+    let growths = methods.into_iter().map(fit).collect::<Result<_>>()?;
+    Ok(Group { with: "training samples", growths })
+}
+
+/// Estimates by a model that keeps all of so many samples.
+fn kept_samples(halves: &Halves) -> Result<Group> {
+    let x: Vec<f64> = halves.test.x.col(0).iter().copied().collect();
+    let ridge = KernelRidge { width: Width::Scatter(1.0), lambda: Lambda::Given(0.1) };
+    let pose = |count: usize| {
+        let first = |of: &Mat<f64>| of.subcols(0, count).to_owned();
+        let (train_x, train_y) = (first(&halves.train.x), first(&halves.train.y));
+        let model = ridge.fit(train_x.as_ref(), train_y.as_ref())?.model;
+        estimate(&model, &x)
+    };
+    let growths = vec![Growth::over("pose", &[20, 40, 80, 160, 320], pose)?];
+    Ok(Group { with: "selected samples", growths })
+}
