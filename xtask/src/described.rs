@@ -47,7 +47,6 @@ impl Samples {
 
 /// The two halves of a split. Codebooks see the training half only.
 pub(crate) struct Halves {
-    pub(crate) split: Split,
     pub(crate) codebooks: Concatenation,
     pub(crate) train: Samples,
     pub(crate) test: Samples,
@@ -62,7 +61,6 @@ impl Described {
             train: self.samples(&codebooks, views, &split.train)?,
             test: self.samples(&codebooks, views, &split.test)?,
             codebooks,
-            split,
         })
     }
 

@@ -22,6 +22,15 @@ pub(crate) enum Orientation {
 }
 
 impl Orientation {
+    /// The name in tables and JSON.
+    ///
+    /// # Panics
+    /// Never: every rule has a name on the command line.
+    pub(crate) fn name(self) -> String {
+        let name = self.to_possible_value().expect("every rule is a value of the command line");
+        name.get_name().replace('_', " ")
+    }
+
     pub(crate) fn rule(self) -> OrientationRule {
         match self {
             Self::ImageAxes => OrientationRule::ImageAxes,

@@ -122,6 +122,20 @@ pub(crate) enum Test {
 }
 
 impl Test {
+    /// All but motion from outside.
+    pub(crate) const SYNTHETIC: [Self; 10] = [
+        Self::Unseen,
+        Self::ThetaBetween,
+        Self::Random,
+        Self::Uncoupled,
+        Self::Hands,
+        Self::Cameras1,
+        Self::Cameras3,
+        Self::Ragged,
+        Self::Rolled,
+        Self::All,
+    ];
+
     /// The name in tables and JSON.
     pub(crate) fn name(self) -> &'static str {
         match self {

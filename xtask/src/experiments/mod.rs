@@ -7,10 +7,12 @@ mod error_by_turn;
 mod estimated_angles;
 mod finding;
 mod fusion;
+mod held_out;
 mod manifold;
 mod nearest_pose;
 mod orientations;
 mod paper_model;
+mod rolled;
 mod selected_features;
 mod selected_samples;
 mod shape_context;
@@ -60,6 +62,8 @@ pub(crate) const ALL: &[Experiment] = &[
     estimated_angles::FIG_8,
     estimated_angles::FIG_9,
     cost::EXPERIMENT,
+    held_out::EXPERIMENT,
+    rolled::EXPERIMENT,
 ];
 
 #[derive(Args)]

@@ -163,9 +163,8 @@ impl Trial<'_> {
         let share =
             |part: &[bool]| part.iter().filter(|right| **right).count() as f64 / part.len() as f64;
         let parts: Vec<&[bool]> = right.chunks(NAMED.len() * HANDS).collect();
-        let value = orientation.to_possible_value().context("an orientation without a name")?;
         Ok(Accuracy {
-            name: value.get_name().replace('_', " "),
+            name: orientation.name(),
             orientation,
             by_roll: parts[..ROLLS_DEG.len()].iter().map(|part| share(part)).collect(),
             ragged: share(parts[ROLLS_DEG.len()]),

@@ -5,8 +5,8 @@ mod errors;
 mod learner;
 mod masks;
 pub(crate) mod method;
-mod print;
-mod row;
+pub(crate) mod print;
+pub(crate) mod row;
 mod timing;
 
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 use phalanx::{OrientationRule, Progress, Scenes};
 use phalanx_camera::Rig;
-use phalanx_hand::HandShape;
+use phalanx_hand::{HandShape, Pose};
 use serde::Serialize;
 
 use crate::data_set::DataSet;
@@ -32,12 +32,12 @@ use method::Method;
 use row::Row;
 
 /// Samples of the random training sets, unless it is said how many.
-const RANDOM_SAMPLES: usize = 5000;
+pub(crate) const RANDOM_SAMPLES: usize = 5000;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Learn from this set only. By default from `complex` and from `random` poses, clean and
-    /// augmented.
+    /// Learn from this set only. By default from both of the paper's and from `random` poses, clean
+    /// and augmented.
     #[arg(long, value_enum)]
     data_set: Option<TrainingSet>,
     /// How many samples the random sets have.
@@ -92,17 +92,16 @@ enum TrainingSet {
 
 #[derive(Serialize)]
 struct Results {
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     rows: Vec<Row>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     curves: Vec<Point>,
 }
 
 /// The rig and the hand that are learnt for.
-struct Ground {
-    rig: Rig,
-    hand: HandShape,
-    rule: OrientationRule,
+pub(crate) struct Ground {
+    pub(crate) rig: Rig,
+    pub(crate) hand: HandShape,
+    pub(crate) rule: OrientationRule,
 }
 
 /// Prints the table or the curves; the exit code tells whether every frame of `--masks` is in.
@@ -141,17 +140,9 @@ fn rows(
 ) -> Result<Vec<Row>> {
     let motion = arguments.poses.as_deref().map(files::poses).transpose()?;
     let motion = motion.map_or_else(Vec::new, |table| table.poses);
-    let tests = tests(arguments)?;
-    let (views, methods) = (views(&ground.rig), methods(arguments));
-    let mut learners = Vec::new();
-    for set in training_sets(arguments, ground)? {
-        learners.extend(learn(&set, &views, ground.rule, &methods, progress)?);
-    }
-    let mut rows = Vec::new();
-    for test in tests {
-        let set = test.set(&ground.rig, &ground.hand, &motion);
-        rows.extend(test_on(&set, &learners, ground, progress)?);
-    }
+    let (sets, tests) = (training_sets(arguments, ground)?, tests(arguments)?);
+    let protocol = Protocol { ground, methods: methods(arguments), tests, motion: &motion };
+    let (learners, mut rows) = protocol.run(&sets, progress)?;
     if let Some(masks) = masks {
         rows.extend(masks.test(&learners, ground)?);
     }
@@ -159,6 +150,37 @@ fn rows(
         timing::add(&mut rows, &learners, ground)?;
     }
     Ok(rows)
+}
+
+/// What is compared, and on what.
+pub(crate) struct Protocol<'a> {
+    pub(crate) ground: &'a Ground,
+    pub(crate) methods: Vec<Method>,
+    pub(crate) tests: Vec<Test>,
+    /// For [`Test::Poses`].
+    pub(crate) motion: &'a [Pose],
+}
+
+impl Protocol<'_> {
+    /// Learns from every set through one view and through all, and takes every test.
+    pub(crate) fn run(
+        &self,
+        sets: &[Set<'_>],
+        progress: &dyn Progress,
+    ) -> Result<(Vec<Learner>, Vec<Row>)> {
+        let Self { ground, methods, tests, motion } = self;
+        let views = views(&ground.rig);
+        let mut learners = Vec::new();
+        for set in sets {
+            learners.extend(learn(set, &views, ground.rule, methods, progress)?);
+        }
+        let mut rows = Vec::new();
+        for test in tests {
+            let set = test.set(&ground.rig, &ground.hand, motion);
+            rows.extend(test_on(&set, &learners, ground, progress)?);
+        }
+        Ok((learners, rows))
+    }
 }
 
 /// Every learner's every method on one test set.
@@ -185,20 +207,28 @@ fn training_sets<'a>(arguments: &Arguments, ground: &'a Ground) -> Result<Vec<Se
     let Ground { rig, hand, .. } = ground;
     ensure!(arguments.samples >= 100, "--samples: {} are too few to learn from", arguments.samples);
     let random = |augment| sets::random(rig, hand, arguments.samples, augment);
-    let stored = |name| -> Result<Set<'a>> {
-        Ok(sets::clean(name, rig, hand, DataSet::stored(name)?.poses))
-    };
     ensure!(
         !arguments.augment || arguments.data_set == Some(TrainingSet::Random),
         "--augment goes with --data-set random"
     );
     Ok(match arguments.data_set {
-        Some(TrainingSet::OpenClose) => vec![stored("open-close")?],
-        Some(TrainingSet::Complex) => vec![stored("complex")?],
+        Some(TrainingSet::OpenClose) => vec![stored("open-close", ground)?],
+        Some(TrainingSet::Complex) => vec![stored("complex", ground)?],
         Some(TrainingSet::Random) if arguments.augment => vec![random(Augment::Yes)],
         Some(TrainingSet::Random) => vec![random(Augment::No)],
-        None => vec![stored("complex")?, random(Augment::No), random(Augment::Yes)],
+        None => all_training_sets(ground, arguments.samples)?,
     })
+}
+
+/// Everything that can be learnt from, the random sets of so many samples.
+pub(crate) fn all_training_sets(ground: &Ground, samples: usize) -> Result<Vec<Set<'_>>> {
+    let random = |augment| sets::random(&ground.rig, &ground.hand, samples, augment);
+    let (open_close, complex) = (stored("open-close", ground)?, stored("complex", ground)?);
+    Ok(vec![open_close, complex, random(Augment::No), random(Augment::Yes)])
+}
+
+fn stored<'a>(name: &'static str, ground: &'a Ground) -> Result<Set<'a>> {
+    Ok(sets::clean(name, &ground.rig, &ground.hand, DataSet::stored(name)?.poses))
 }
 
 fn methods(arguments: &Arguments) -> Vec<Method> {
@@ -223,6 +253,6 @@ fn tests(arguments: &Arguments) -> Result<Vec<Test>> {
     if arguments.masks.is_some() {
         return Ok(if outside { vec![Test::Poses] } else { Vec::new() });
     }
-    let possible = |test: &Test| outside || *test != Test::Poses;
-    Ok(Test::value_variants().iter().copied().filter(possible).collect())
+    let last = outside.then_some(Test::Poses);
+    Ok(Test::SYNTHETIC.into_iter().chain(last).collect())
 }

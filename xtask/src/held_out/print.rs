@@ -6,55 +6,56 @@ use comfy_table::{Table, presets};
 
 use super::row::Row;
 
-/// One table for each training set and number of views: tests down, methods across.
-pub(crate) fn tables(rows: &[Row]) -> String {
-    let mut text = String::from(
-        "# What was never seen\n\nPrinted by `cargo xtask eval-held-out`: mean absolute error over the 21 active angles in\n\
-         degrees and, in brackets, over that of predicting the training mean.\n",
-    );
-    let block = |row: &Row| (row.train, row.train_samples, row.views);
-    let mut blocks: Vec<_> = rows.iter().map(block).collect();
-    blocks.dedup();
-    let mut named = Vec::new();
-    for of in blocks {
-        if named.contains(&of) {
-            continue;
-        }
-        named.push(of);
-        let (train, samples, views) = of;
-        let rows: Vec<&Row> = rows.iter().filter(|row| block(row) == of).collect();
-        let _ = write!(
-            text,
-            "\n## Trained on `{train}`, {samples} samples, {views} view{}\n\n{}\n",
-            if views == 1 { "" } else { "s" },
-            table(&rows)
-        );
-    }
-    text
+/// The rows of one training set and number of views: tests down, methods across.
+pub(crate) struct Block<'a> {
+    rows: Vec<&'a Row>,
 }
 
-fn table(rows: &[&Row]) -> Table {
-    let distinct = |name: fn(&Row) -> &'static str| {
-        let mut names: Vec<&str> = Vec::new();
-        for row in rows {
-            if !names.contains(&name(row)) {
-                names.push(name(row));
-            }
+/// All blocks, in the order of their first rows.
+pub(crate) fn blocks(rows: &[Row]) -> Vec<Block<'_>> {
+    let mut blocks: Vec<Block<'_>> = Vec::new();
+    let of = |row: &Row| (row.train, row.train_samples, row.views);
+    for row in rows {
+        match blocks.iter_mut().find(|block| of(block.rows[0]) == of(row)) {
+            Some(block) => block.rows.push(row),
+            None => blocks.push(Block { rows: vec![row] }),
         }
-        names
-    };
-    let methods = distinct(|row| row.method);
-    let mut table = Table::new();
-    let header = std::iter::once("test").chain(methods.iter().copied());
-    table.load_style(presets::ASCII_MARKDOWN).set_header(header);
-    for test in distinct(|row| row.test) {
-        let cell = |method: &&str| {
-            let row = rows.iter().find(|row| row.test == test && row.method == *method);
-            row.map_or_else(String::new, |row| cell(row))
-        };
-        table.add_row(std::iter::once(test.to_owned()).chain(methods.iter().map(cell)));
     }
-    table
+    blocks
+}
+
+impl Block<'_> {
+    pub(crate) fn title(&self) -> String {
+        let Row { train, train_samples, views, .. } = self.rows[0];
+        let views = if *views == 1 { "1 view".to_owned() } else { format!("{views} views") };
+        format!("Trained on `{train}`, {train_samples} samples, {views}")
+    }
+
+    pub(crate) fn methods(&self) -> Vec<&'static str> {
+        distinct(self.rows.iter().map(|row| row.method))
+    }
+
+    /// The test's name, then each method's error.
+    pub(crate) fn cells(&self) -> Vec<Vec<String>> {
+        let line = |test: &'static str| {
+            let cell = |method: &str| {
+                let row = self.rows.iter().find(|row| row.test == test && row.method == method);
+                row.map_or_else(String::new, |row| cell(row))
+            };
+            std::iter::once(test.to_owned()).chain(self.methods().into_iter().map(cell)).collect()
+        };
+        distinct(self.rows.iter().map(|row| row.test)).into_iter().map(line).collect()
+    }
+}
+
+fn distinct(names: impl Iterator<Item = &'static str>) -> Vec<&'static str> {
+    let mut found = Vec::new();
+    for name in names {
+        if !found.contains(&name) {
+            found.push(name);
+        }
+    }
+    found
 }
 
 fn cell(row: &Row) -> String {
@@ -63,4 +64,19 @@ fn cell(row: &Row) -> String {
         None => format!("{:.2} ({ratio:.2})", row.mae_deg),
         Some(time) => format!("{:.2} ({ratio:.2}) {time:.0} µs", row.mae_deg),
     }
+}
+
+/// One table for each block.
+pub(crate) fn tables(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "# What was never seen\n\nPrinted by `cargo xtask eval-held-out`: mean absolute error over the 21 active angles in\n\
+         degrees and, in brackets, over that of predicting the training mean.\n",
+    );
+    for block in blocks(rows) {
+        let mut table = Table::new();
+        let header = std::iter::once("test").chain(block.methods());
+        table.load_style(presets::ASCII_MARKDOWN).set_header(header).add_rows(block.cells());
+        let _ = write!(text, "\n## {}\n\n{table}\n", block.title());
+    }
+    text
 }
