@@ -269,7 +269,8 @@ fn notes(trials: &[Trial]) -> Vec<String> {
             mean(trials, |t| thumb(&t.tipping.errors)),
         ),
         format!(
-            "With as many elements as Tipping keeps, the column-wise error is {:.2}° where Tipping's is {:.2}°, and {:.2}° where it is \
+            "With as many elements as Tipping keeps, the column-wise error is {:.2}° \
+             where Tipping's is {:.2}°, and {:.2}° where it is \
              {:.2}° with noise assumed.",
             mae(trials, |t| &t.as_many),
             mae(trials, |t| &t.tipping),

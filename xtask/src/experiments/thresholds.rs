@@ -176,8 +176,8 @@ fn finding(curves: &[Curves]) -> Result<Finding> {
         ),
         notes: vec![format!(
             "Below some threshold the prior ν alone says how many columns survive, and there the \
-             counts say nothing of T_a; the paper does not give its ν. Counted are the thresholds that leave less than {:.0} % of what the lowest leaves, to \
-             either.",
+             counts say nothing of T_a; the paper does not give its ν. Counted are the thresholds \
+             that leave less than {:.0} % of what the lowest leaves, to either.",
             100.0 * CUT
         )],
         tables: vec![table],
