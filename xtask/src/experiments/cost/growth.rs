@@ -173,14 +173,16 @@ fn first(of: &Mat<f64>, count: usize) -> Mat<f64> {
     of.subcols(0, count).to_owned()
 }
 
-/// The steps that the linear fit takes on the fewest and on the most samples.
-pub(super) fn linear_steps(halves: &Halves) -> Result<[usize; 2]> {
+/// The steps of the linear fit, and the ν/m at which it could end, on the fewest and on the most
+/// samples.
+pub(super) fn linear_steps(halves: &Halves) -> Result<[(usize, f64); 2]> {
     let counts = PaperCounts::paper(3, "complex");
     let regressor = TableMethod::Lin.regressor(counts).context("it fits nothing")?;
     let [fewest, .., most] = sizes(halves);
-    let steps = |count| -> Result<usize> {
+    let steps = |count| -> Result<(usize, f64)> {
         let (x, y) = (first(&halves.train.x, count), first(&halves.train.y, count));
-        Ok(regressor.fit(&x, &y)?.report.iterations)
+        let report = regressor.fit(&x, &y)?.report;
+        Ok((report.iterations, report.penalty.context("bridges have a penalty")?))
     };
     Ok([steps(fewest)?, steps(most)?])
 }
