@@ -156,7 +156,7 @@ fn finding(settings: &[Setting; 3], claims: &[bool], sentence: String) -> Result
     let words = |single: &Setting| {
         let gain = |angle| {
             let Mean { value, standard_error } = single.gain(three, angle);
-            format!("{:.0} ± {:.0} %", 100.0 * value, 100.0 * standard_error)
+            format!("{:+.0} ± {:.0} %", -100.0 * value, 100.0 * standard_error)
         };
         format!("{} for PIP and {} for θ_Z", gain(0), gain(1))
     };
@@ -165,7 +165,7 @@ fn finding(settings: &[Setting; 3], claims: &[bool], sentence: String) -> Result
         sentence,
         notes: vec![
             format!(
-                "Three views lower the error, against one view at the paper's counts, by {}; \
+                "Three views change the error, against one view at the paper's counts, by {}; \
                  against one view with as many columns as three views have, by {}.",
                 words(one),
                 words(equal)

@@ -165,15 +165,35 @@ fn centres(described: &Described) -> Result<Group> {
     Ok(Group { with: "K", growths })
 }
 
+fn sizes(halves: &Halves) -> [usize; 4] {
+    [8, 4, 2, 1].map(|part| halves.train.x.ncols() / part)
+}
+
+fn first(of: &Mat<f64>, count: usize) -> Mat<f64> {
+    of.subcols(0, count).to_owned()
+}
+
+/// The steps of the linear fit, and the ν/m at which it could end, on the fewest and on the most
+/// samples.
+pub(super) fn linear_steps(halves: &Halves) -> Result<[(usize, f64); 2]> {
+    let counts = PaperCounts::paper(3, "complex");
+    let regressor = TableMethod::Lin.regressor(counts).context("it fits nothing")?;
+    let [fewest, .., most] = sizes(halves);
+    let steps = |count| -> Result<(usize, f64)> {
+        let (x, y) = (first(&halves.train.x, count), first(&halves.train.y, count));
+        let report = regressor.fit(&x, &y)?.report;
+        Ok((report.iterations, report.penalty.context("bridges have a penalty")?))
+    };
+    Ok([steps(fewest)?, steps(most)?])
+}
+
 fn training_samples(halves: &Halves) -> Result<Group> {
-    let all = halves.train.x.ncols();
-    let sizes = [all / 8, all / 4, all / 2, all];
+    let sizes = sizes(halves);
     let counts = PaperCounts::paper(3, "complex");
     let fit = |method: TableMethod| {
         let regressor = method.regressor(counts).context("it fits nothing")?;
         Growth::over(method.name(), &sizes, |count| {
-            let first = |of: &Mat<f64>| of.subcols(0, count).to_owned();
-            let (x, y) = (first(&halves.train.x), first(&halves.train.y));
+            let (x, y) = (first(&halves.train.x, count), first(&halves.train.y, count));
             seconds(|| {
                 black_box(regressor.fit(&x, &y)?);
                 Ok(())
@@ -190,8 +210,7 @@ fn kept_samples(halves: &Halves) -> Result<Group> {
     let x: Vec<f64> = halves.test.x.col(0).iter().copied().collect();
     let ridge = KernelRidge { width: Width::Scatter(1.0), lambda: Lambda::Given(0.1) };
     let pose = |count: usize| {
-        let first = |of: &Mat<f64>| of.subcols(0, count).to_owned();
-        let (train_x, train_y) = (first(&halves.train.x), first(&halves.train.y));
+        let (train_x, train_y) = (first(&halves.train.x, count), first(&halves.train.y, count));
         let model = ridge.fit(train_x.as_ref(), train_y.as_ref())?.model;
         estimate(&model, &x)
     };
