@@ -69,7 +69,7 @@ enum Command {
     Fixtures(fixtures::Arguments),
     /// Train the skin model that the segmentation crate ships.
     SkinModel(skin_model::Arguments),
-    /// Draw silhouettes, contours and hand axes over photographs, and measure the skin model.
+    /// Draw silhouettes, contours and axes over photographs, and measure the skin model.
     ContactSheet(contact_sheet::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
     Pictures(pictures::Arguments),

@@ -36,15 +36,24 @@ pub enum OrientationRule {
 }
 
 impl OrientationRule {
-    fn of(self, silhouette: &Silhouette) -> Orientation {
-        match self {
+    /// The points that are described, and their orientation.
+    fn of<'a>(
+        self,
+        silhouette: &'a Silhouette,
+        outline: &'a mut Vec<[f64; 2]>,
+    ) -> Result<(&'a [[f64; 2]], Orientation), phalanx_shape_context::Error> {
+        let orientation = match self {
             Self::ImageAxes => Orientation::ImageAxes,
             Self::Tangent => Orientation::Tangent { chain: chain(silhouette) },
             Self::Centroid => Orientation::Centroid,
             Self::PrincipalAxis => Orientation::PrincipalAxis,
             Self::HandAxis => Orientation::HandAxis { forearm_end: silhouette.forearm.end },
-            Self::ForearmAxis => Orientation::ForearmAxis { sides: silhouette.forearm.sides },
-        }
+            Self::ForearmAxis => {
+                let direction = trace_outline(silhouette, outline)?.direction;
+                return Ok((outline, Orientation::ForearmAxis { direction }));
+            }
+        };
+        Ok((&silhouette.contour.points, orientation))
     }
 }
 
@@ -121,12 +130,7 @@ impl Describer {
         silhouette: &Silhouette,
         rule: OrientationRule,
     ) -> Result<Descriptors<'_>, phalanx_shape_context::Error> {
-        let points = if rule == OrientationRule::ForearmAxis {
-            trace_outline(silhouette, &mut self.outline)?;
-            &self.outline
-        } else {
-            &silhouette.contour.points
-        };
-        self.contexts.compute(points, rule.of(silhouette))
+        let (points, orientation) = rule.of(silhouette, &mut self.outline)?;
+        self.contexts.compute(points, orientation)
     }
 }

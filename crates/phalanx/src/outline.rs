@@ -1,7 +1,7 @@
 //! The contour's points, whatever the camera's roll.
 
 use phalanx_segmentation::Silhouette;
-use phalanx_shape_context::{Chain, Error, forearm_axis, resample};
+use phalanx_shape_context::{Chain, Error, ForearmAxis, forearm_axis, resample};
 
 /// Distance of the points along the contour, pixels.
 const STEP: f64 = 1.0;
@@ -17,12 +17,12 @@ pub(crate) fn chain(silhouette: &Silhouette) -> Chain {
 pub(crate) fn trace_outline(
     silhouette: &Silhouette,
     points: &mut Vec<[f64; 2]>,
-) -> Result<(), Error> {
+) -> Result<ForearmAxis, Error> {
     points.clear();
     for piece in silhouette.contour.pieces() {
         resample(piece, chain(silhouette), STEP, points)?;
     }
     let axis = forearm_axis(points, silhouette.forearm.sides)?;
     points.retain(|&point| axis.is_ahead(point));
-    Ok(())
+    Ok(axis)
 }

@@ -2,7 +2,7 @@
 
 use image::{Rgb, RgbImage};
 use phalanx_segmentation::{CropWindow, Silhouette};
-use phalanx_shape_context::{forearm_axis, hand_axis};
+use phalanx_shape_context::hand_axis;
 
 use crate::outline::trace_outline;
 use crate::{OrientationRule, WORKING_SIZE};
@@ -53,8 +53,7 @@ fn axis(observed: &Silhouette, rule: OrientationRule) -> Option<[[f64; 2]; 2]> {
         }
         OrientationRule::ForearmAxis => {
             let mut points = Vec::new();
-            trace_outline(observed, &mut points).ok()?;
-            let axis = forearm_axis(&points, observed.forearm.sides).ok()?;
+            let axis = trace_outline(observed, &mut points).ok()?;
             let length = points.iter().map(|&point| axis.ahead(point)).fold(0.0, f64::max);
             Some([axis.start, [0, 1].map(|k| axis.start[k] + length * axis.direction[k])])
         }

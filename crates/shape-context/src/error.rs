@@ -55,8 +55,9 @@ pub enum Error {
     /// Every contour point lies on the forearm's end: there is no hand axis.
     #[error("every contour point lies on the forearm's end")]
     NoHandAxis,
-    /// The forearm has no two sides: they begin in one place, or no contour point lies along one.
-    #[error("no contour points along both sides of the forearm")]
+    /// The forearm has no axis: its sides begin in one place, no contour point lies along one of
+    /// them, or its direction is given as zero or as no number.
+    #[error("the forearm has no axis: no contour points along both of its sides")]
     NoForearmAxis,
     /// A step along the contour that is not positive.
     #[error("a step of {step} along the contour is not positive")]

@@ -21,7 +21,7 @@ pub struct ForearmAxis {
 const REACH: f64 = 1.5;
 
 /// The stretch that is looked at turns with the direction that is found in it.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 2;
 
 /// Relative size below which a spread is taken for zero, and a point for one on the cut.
 const NEGLIGIBLE: f64 = 1e-9;

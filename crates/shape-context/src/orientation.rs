@@ -1,6 +1,6 @@
 use crate::{
-    Error, Result, forearm_axis, hand_axis,
-    points::{centroid, norm, perpendicular, sub, unit},
+    Error, Result, hand_axis,
+    points::{centroid, in_range, norm, perpendicular, sub, unit},
     principal::principal_axis,
     tangent::tangents,
 };
@@ -42,10 +42,10 @@ pub enum Orientation {
         forearm_end: [f64; 2],
     },
     /// The forearm's axis, for all points: along its two sides, towards the hand. No finger moves
-    /// it. See [`forearm_axis`].
+    /// it. See [`forearm_axis`](crate::forearm_axis).
     ForearmAxis {
-        /// Where the forearm's sides begin, in pixels.
-        sides: [[f64; 2]; 2],
+        /// Its direction, of any length but zero.
+        direction: [f64; 2],
     },
 }
 
@@ -70,8 +70,9 @@ impl Axes {
             Orientation::HandAxis { forearm_end } => {
                 Self::Shared(hand_axis(points, forearm_end)?.direction())
             }
-            Orientation::ForearmAxis { sides } => {
-                Self::Shared(forearm_axis(points, sides)?.direction)
+            Orientation::ForearmAxis { direction } => {
+                let is_direction = in_range(direction) && direction != [0.0; 2];
+                Self::Shared(is_direction.then(|| unit(direction)).ok_or(Error::NoForearmAxis)?)
             }
             Orientation::Tangent { chain } => {
                 let mut axes = self.take_buffer();

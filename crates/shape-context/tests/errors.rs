@@ -1,7 +1,7 @@
 //! Contours that cannot be described are refused by name.
 
 use phalanx_shape_context::{
-    Chain, Error, MAX_POINTS, Orientation, ShapeContexts, hand_axis, mean_distance,
+    Chain, Error, MAX_POINTS, Orientation, ShapeContexts, forearm_axis, hand_axis, mean_distance,
 };
 use proptest::prelude::*;
 
@@ -33,6 +33,10 @@ fn coordinates_out_of_range() {
 fn points_in_one_place() {
     assert_eq!(mean_distance(&[[3.0, 4.0]; 9]), Err(Error::Coincident { mean_distance: 0.0 }));
     assert_eq!(hand_axis(&[[3.0, 4.0]; 9], [3.0, 4.0]), Err(Error::NoHandAxis));
+    // In one place, and with nothing along the second.
+    for sides in [[[3.0, 4.0]; 2], [[0.0, 0.0], [0.0, 1.0]]] {
+        assert_eq!(forearm_axis(&BENT, sides), Err(Error::NoForearmAxis));
+    }
 }
 
 #[test]
@@ -85,6 +89,13 @@ proptest! {
         let tiny: Vec<_> = points.iter().map(|p| p.map(|c| c % 1e-8)).collect();
         let mut contexts = ShapeContexts::new();
         for points in [points, small, tiny] {
+            for sides in [[end, [1.0, 1.0]], [[0.0, 2.0], [2.0, 2.0]]] {
+                if let Ok(axis) = forearm_axis(&points, sides) {
+                    let [x, y] = axis.direction;
+                    prop_assert!((x.hypot(y) - 1.0).abs() < 1e-9 && axis.width > 0.0);
+                    prop_assert!(axis.start.iter().all(|c| c.is_finite()));
+                }
+            }
             for orientation in [
                 Orientation::ImageAxes,
                 Orientation::Tangent { chain: Chain::Closed },
@@ -93,8 +104,8 @@ proptest! {
                 Orientation::PrincipalAxis,
                 Orientation::HandAxis { forearm_end: end },
                 Orientation::HandAxis { forearm_end: [1.0, 1.0] },
-                Orientation::ForearmAxis { sides: [end, [1.0, 1.0]] },
-                Orientation::ForearmAxis { sides: [[0.0, 2.0], [2.0, 2.0]] },
+                Orientation::ForearmAxis { direction: end },
+                Orientation::ForearmAxis { direction: [0.0, 5e-324] },
             ] {
                 if let Ok(found) = contexts.compute(&points, orientation) {
                     prop_assert_eq!(found.rows().len(), points.len());
