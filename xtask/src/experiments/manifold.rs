@@ -55,21 +55,57 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
             &scatter(&axes, &turn),
         )?);
     }
-    let [one, three] = [&aligned[0], &aligned[1]].map(|rho| (rho[0][0], rho[1][1]));
-    let clear = |(turn, flexion): (f64, f64)| turn > 0.7 && flexion > 0.7;
-    let claims = [clear(three), !clear(one)];
+    let [one, three] = [&aligned[0], &aligned[1]].map(|rho| Alignment::of(rho));
+    let claims = [three.is_clear(), three.turn_axis == 0, !one.is_clear()];
+    let mut notes = Vec::new();
+    if three.turn_axis != 0 {
+        notes.push(
+            "The order of the axes follows from how far the motion goes: closing the whole hand changes our \
+             silhouettes more than turning it by 90° does, and so comes first."
+                .to_owned(),
+        );
+    }
     Ok(Finding {
         verdict: Verdict::of(&claims),
-        sentence: format!(
-            "With three views the first axis correlates {:.2} with θ_Z and the second {:.2} with mean \
-             flexion; with one view {:.2} and {:.2}.",
-            three.0, three.1, one.0, one.1
-        ),
-        notes: Vec::new(),
+        sentence: format!("{} {}", three.words("With three views"), one.words("With one view")),
+        notes,
         tables: vec![table],
         figures,
         json: json!({ "rows": rows }),
     })
+}
+
+/// Which of the first two axes follows θ_Z, the other one following the flexion, and how well.
+struct Alignment {
+    turn_axis: usize,
+    turn: f64,
+    flexion: f64,
+}
+
+/// A correlation from which on an axis is said to follow something.
+const FOLLOWS: f64 = 0.7;
+
+impl Alignment {
+    /// The better of both ways; `rho` holds each axis's correlations with θ_Z and with flexion.
+    fn of(rho: &[[f64; 2]]) -> Self {
+        let way =
+            |axis: usize| Self { turn_axis: axis, turn: rho[axis][0], flexion: rho[1 - axis][1] };
+        let (first, second) = (way(0), way(1));
+        if first.turn + first.flexion >= second.turn + second.flexion { first } else { second }
+    }
+
+    fn is_clear(&self) -> bool {
+        self.turn >= FOLLOWS && self.flexion >= FOLLOWS
+    }
+
+    fn words(&self, views: &str) -> String {
+        let [turn, flexion] =
+            if self.turn_axis == 0 { ["first", "second"] } else { ["second", "first"] };
+        format!(
+            "{views} the {turn} axis correlates {:.2} with θ_Z and the {flexion} {:.2} with mean flexion.",
+            self.turn, self.flexion
+        )
+    }
 }
 
 /// The samples along the first two axes, in a few colours by θ_Z.
