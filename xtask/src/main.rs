@@ -7,6 +7,7 @@ mod described;
 mod experiments;
 mod files;
 mod fixtures;
+mod headline;
 mod held_out;
 mod lab;
 mod memory;
@@ -71,6 +72,8 @@ enum Command {
     SkinModel(skin_model::Arguments),
     /// Draw silhouettes, contours and axes over photographs, and measure the skin model.
     ContactSheet(contact_sheet::Arguments),
+    /// Write the README's table: Table 1 beside what was never seen.
+    Headline(headline::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
     Pictures(pictures::Arguments),
     /// Time every stage and write docs/performance.md.
@@ -104,6 +107,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::EvalHeldOut(arguments) => return held_out::run(arguments),
         Command::Experiment(arguments) => experiments::run(arguments)?,
         Command::Report(arguments) => return report::run(arguments),
+        Command::Headline(arguments) => headline::run(arguments)?,
         Command::Fixtures(arguments) => fixtures::run(arguments)?,
         Command::SkinModel(arguments) => skin_model::run(arguments)?,
         Command::ContactSheet(arguments) => contact_sheet::run(arguments)?,

@@ -35,6 +35,8 @@ pub(crate) fn legend() -> String {
 pub(crate) fn print(rows: &[Row]) -> Result<()> {
     files::print(&format!(
         "# Table 1\n\nPrinted by `cargo xtask eval-table1`: {}\n\n\
+         Test poses are neighbours of training poses here, in the same sequence. What to expect of poses\n\
+         that were never seen, `cargo xtask eval-held-out` tells.\n\n\
          ## At the paper's counts\n\n{}\n\n## At equal counts: those of three views\n\n{}\n",
         legend(),
         table(rows, "paper"),
