@@ -11,7 +11,7 @@ use crate::described::Described;
 use crate::files;
 
 /// The paper's seven angles about the forearm, degrees.
-const THETA_Z_DEG: [f64; 7] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0];
+pub(crate) const THETA_Z_DEG: [f64; 7] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0];
 
 /// Poses to learn from, with the name that tables give them.
 pub(crate) struct DataSet {

@@ -9,7 +9,8 @@ use anyhow::{Context, Result, ensure};
 use crate::files;
 
 const SAMPLES: [usize; 5] = [1000, 5000, 10_000, 20_000, 50_000];
-/// Least samples between the codebooks' and the centres' fixed cost and what is measured.
+/// A training whose time is mostly the fixed cost of codebooks and centres: each sample's own time is
+/// that of what comes on top.
 const FIXED: usize = 5000;
 /// The most memory that 50,000 samples may take, MiB.
 const MOST_MIB: f64 = 2048.0;

@@ -5,14 +5,14 @@ use phalanx::{Border, Damage, Hands, ItemRandom, Scene, Scenes};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, coupled_pose, uncoupled_pose};
 
+use crate::data_set::THETA_Z_DEG;
 use crate::trajectories::complex_take;
 
 /// Silhouettes from each camera in a test set.
 pub(crate) const TEST_SAMPLES: usize = 2000;
 /// Takes of `complex` in the test sets of motion; none is the stored one.
 const TAKES: u64 = 10;
-/// θ_Z of the training sequences, and halfway between them, degrees.
-const TRAINED_DEG: [f64; 7] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0];
+/// Halfway between the θ_Z of the training sequences, degrees.
 const BETWEEN_DEG: [f64; 6] = [7.5, 22.5, 37.5, 52.5, 67.5, 82.5];
 /// How far the bones and radii of other people's hands differ from the mean hand's.
 const SPREAD: f64 = 0.1;
@@ -48,6 +48,15 @@ impl Scenes for Set<'_> {
 /// The cameras' tilt, 1° to 3°, in training with damage and in the test with all of it.
 fn turned(low_deg: f64, high_deg: f64) -> Damage {
     Damage { camera_turn: low_deg.to_radians()..=high_deg.to_radians(), ..Damage::NONE }
+}
+
+/// How many random samples may be asked for, on the command line: a hundred to ten million.
+pub(crate) fn samples(text: &str) -> Result<usize, String> {
+    let samples: usize = text.parse().map_err(|error| format!("{error}"))?;
+    if (100..=10_000_000).contains(&samples) {
+        return Ok(samples);
+    }
+    Err(format!("{samples} is not between 100 and 10,000,000"))
 }
 
 /// Poses as they are, to learn from.
@@ -164,7 +173,7 @@ impl Test {
                 independent(TEST_SAMPLES, TEST_POSES, |random| uncoupled_pose(|| random.uniform()))
             }
             Self::Poses => outside(motion),
-            _ => takes(&TRAINED_DEG),
+            _ => takes(&THETA_Z_DEG),
         };
         Set { name: self.name(), rig, hand, poses, damage: self.damage(), seed: TEST_DAMAGE }
     }
@@ -192,12 +201,16 @@ fn takes(theta_z_deg: &[f64]) -> Vec<Pose> {
 }
 
 /// Frames of outside motion, evenly spaced. Where they do not turn about the forearm, each is at
-/// one of the trained angles.
+/// one of the trained angles, and few frames are gone through several times.
 fn outside(motion: &[Pose]) -> Vec<Pose> {
-    if motion.iter().any(|pose| pose[Dof::ThetaZ] != motion[0][Dof::ThetaZ]) {
+    let turns = motion.iter().any(|pose| pose[Dof::ThetaZ] != motion[0][Dof::ThetaZ]);
+    if turns && motion.len() <= TEST_SAMPLES {
+        return motion.to_vec();
+    }
+    if turns {
         return evenly_spaced(motion);
     }
-    turned_at_random(motion, &TRAINED_DEG)
+    turned_at_random(motion, &THETA_Z_DEG)
 }
 
 fn turned_at_random(frames: &[Pose], theta_z_deg: &[f64]) -> Vec<Pose> {
@@ -209,7 +222,7 @@ fn turned_at_random(frames: &[Pose], theta_z_deg: &[f64]) -> Vec<Pose> {
     evenly_spaced(frames).into_iter().enumerate().map(turned).collect()
 }
 
-/// As many frames as a test set has; a shorter motion is gone through several times.
+/// As many frames as a test set has.
 fn evenly_spaced(frames: &[Pose]) -> Vec<Pose> {
     let rounds = TEST_SAMPLES.div_ceil(frames.len());
     let step = |i: usize| i * rounds * frames.len() / TEST_SAMPLES % frames.len();
@@ -225,4 +238,67 @@ fn independent(samples: usize, seed: u64, pose: impl Fn(&mut ItemRandom) -> Pose
         pose
     };
     (0..samples).map(draw).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files;
+
+    fn poses_of(test: Test) -> Vec<Pose> {
+        let (rig, hand) = (files::rig(None).unwrap(), files::hand(None).unwrap());
+        test.set(&rig, &hand, &[]).poses
+    }
+
+    #[test]
+    fn every_test_has_as_many_samples() {
+        for test in Test::SYNTHETIC {
+            assert_eq!(poses_of(test).len(), TEST_SAMPLES, "{}", test.name());
+        }
+    }
+
+    #[test]
+    fn theta_is_between_where_it_is_said_to_be() {
+        for test in [Test::ThetaBetween, Test::All] {
+            for pose in poses_of(test) {
+                let degrees = pose[Dof::ThetaZ].to_degrees();
+                assert!((degrees / 15.0).fract() > 0.4, "{degrees}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_tested_on_is_not_what_is_learnt_from() {
+        let (rig, hand) = (files::rig(None).unwrap(), files::hand(None).unwrap());
+        let learnt = random(&rig, &hand, 3000, Augment::No).poses;
+        for pose in poses_of(Test::Random) {
+            assert!(!learnt.contains(&pose));
+        }
+    }
+
+    #[test]
+    fn a_larger_random_set_begins_with_the_smaller() {
+        let (rig, hand) = (files::rig(None).unwrap(), files::hand(None).unwrap());
+        let set = |samples| random(&rig, &hand, samples, Augment::Yes);
+        let (small, large) = (set(100), set(200));
+        for number in 0..100 {
+            assert_eq!(small.scene(number), large.scene(number));
+        }
+    }
+
+    #[test]
+    fn damaged_sets_are_the_same_motion() {
+        let unseen = poses_of(Test::Unseen);
+        for test in [Test::Hands, Test::Cameras1, Test::Cameras3, Test::Ragged, Test::Rolled] {
+            assert_eq!(poses_of(test), unseen, "{}", test.name());
+        }
+    }
+
+    #[test]
+    fn a_number_of_samples_is_sensible() {
+        assert_eq!(samples("100"), Ok(100));
+        for text in ["99", "0", "10000001", "-3", "many"] {
+            assert!(samples(text).is_err(), "{text}");
+        }
+    }
 }

@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE.toml")]
     hand: Option<PathBuf>,
     /// With `--data-set random`, how many independent poses are learnt from: 20,000 by default.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = sets::samples)]
     samples: Option<usize>,
     /// With `--data-set random`, give every sample a hand of its own, moved cameras and a ragged
     /// silhouette.
@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     augment: bool,
     /// With `--data-set random`, do the i-th of n equal parts of the work and write it to `--out`;
     /// `cargo xtask merge` joins the parts.
-    #[arg(long, value_name = "i/n", value_parser = shard)]
+    #[arg(long, value_name = "i/n", value_parser = shard, requires = "out")]
     shard: Option<Shard>,
     /// Say how much memory was held at most.
     #[arg(long)]
@@ -124,7 +124,7 @@ fn random(arguments: &Arguments, rig: &Rig, hand: &HandShape) -> Result<()> {
         let out = arguments.out.as_deref().unwrap_or(MODEL.as_ref());
         return save(&part.finish()?, out);
     }
-    let out = arguments.out.as_deref().context("--shard needs --out: where its part goes")?;
+    let out = arguments.out.as_deref().context("a shard has a place to go to")?;
     let bytes = part.to_bytes()?;
     files::write_whole(out, &bytes)?;
     files::print(&format!("{}: {} KiB\n", out.display(), bytes.len().div_ceil(1024)))

@@ -30,7 +30,7 @@ pub use picture::{Picture, Segmenter};
 pub use progress::{Progress, Silent};
 pub use random::ItemRandom;
 pub use regressor::Regressor;
-pub use scene::{NominalScenes, Scene, Scenes, View};
+pub use scene::{EvenlySpaced, NominalScenes, Scene, Scenes, View};
 pub use shard::Shard;
 pub use training::{Training, descriptors, targets};
 pub use training_views::{

@@ -11,12 +11,9 @@ use crate::container::Container;
 use crate::regressor::evenly_spaced;
 use crate::shard::{BLOCK, scenes_of};
 use crate::{
-    Error, Estimator, OrientationRule, Progress, Regressor, Result, Scenes, Shard, Training,
-    ViewCodebooks, describe_each, describe_with, targets,
+    Error, Estimator, EvenlySpaced, OrientationRule, Progress, Regressor, Result, Scenes, Shard,
+    Training, ViewCodebooks, describe_each, describe_with, targets,
 };
-
-/// Scenes, evenly spaced, whose shape contexts the codebooks are learnt from.
-const CODEBOOK_SCENES: usize = 1000;
 
 const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 1 };
 
@@ -49,27 +46,16 @@ struct Basis {
 }
 
 impl Training {
-    /// Learns an estimator from scenes of a rig, of which there may be any number: none is kept.
-    /// Scenes that some camera does not show well enough are left out.
+    /// Learns from scenes of a rig, of which there may be any number: none is kept. Scenes that some
+    /// camera does not show well enough are left out; [`Part::left_out`] tells how many.
     ///
-    /// The codebooks are learnt from at most a thousand of them, evenly spaced, and the regressor
+    /// A run does the `shard` of all blocks of scenes that it is told; runs that differ in nothing
+    /// else give parts which, merged in any order, [finish](Part::finish) to the bytes of a single
+    /// run of [`Shard::WHOLE`].
+    ///
+    /// The codebooks are learnt from at most a thousand scenes, evenly spaced, and the regressor
     /// has at most [`Regressor::CANDIDATES`] Gaussians. `rig` and `hand` are what the estimator
     /// takes pictures to be of, whatever the scenes are.
-    ///
-    /// # Errors
-    /// As for [`shard`](Self::shard) and [`Part::finish`].
-    pub fn stream(
-        &self,
-        rig: &Rig,
-        hand: &HandShape,
-        scenes: &dyn Scenes,
-        progress: &dyn Progress,
-    ) -> Result<Estimator> {
-        self.shard(rig, hand, scenes, Shard::WHOLE, progress)?.finish()
-    }
-
-    /// One shard of [`stream`](Self::stream), for a run that has the same input as all others but
-    /// for its number. The shards' parts, merged in any order, give the bytes of a single run.
     ///
     /// # Errors
     /// An unusable rig or hand, fewer than two scenes that can be described, a regressor that
@@ -115,8 +101,7 @@ impl Training {
         progress: &dyn Progress,
     ) -> Result<Basis> {
         self.regressor.summed()?;
-        let spaced =
-            Chosen { all: scenes, numbers: evenly_spaced(scenes.count(), CODEBOOK_SCENES) };
+        let spaced = EvenlySpaced::new(scenes, Training::CODEBOOK_SCENES);
         let described = describe_each(rig, &spaced, self.orientation, progress)?;
         let (contexts, failed): (Vec<_>, Vec<_>) = described.into_iter().partition(Result::is_ok);
         let contexts: Vec<_> = contexts.into_iter().filter_map(Result::ok).collect();
@@ -183,6 +168,28 @@ impl Part {
         self.left_out
     }
 
+    /// Do the numbers of scenes fit each other, and are there no more than training makes?
+    fn check_numbers(&self) -> Result<()> {
+        let ascending = |numbers: &[usize], end: usize| {
+            numbers.is_sorted_by(|a, b| a < b) && numbers.last().is_none_or(|last| *last < end)
+        };
+        let shown: usize = self.blocks.iter().map(|&b| scenes_of(b, self.scenes).len()).sum();
+        for (reason, holds) in [
+            ("its blocks are not in order", ascending(&self.blocks, self.scenes.div_ceil(BLOCK))),
+            ("its pilot is not in order", ascending(&self.basis.pilot, self.scenes)),
+            ("its pilot is too large", self.basis.pilot.len() <= Regressor::CANDIDATES),
+            (
+                "its sums are of other scenes than its blocks",
+                self.sums.samples().checked_add(self.left_out) == Some(shown),
+            ),
+        ] {
+            if !holds {
+                return Err(Error::FileContent { what: PART.what, reason: reason.to_owned() });
+            }
+        }
+        Ok(())
+    }
+
     /// Adds another part of the same training.
     ///
     /// # Errors
@@ -199,7 +206,8 @@ impl Part {
                 return Err(Error::ForeignPart { what });
             }
         }
-        if let Some(&block) = other.blocks.iter().find(|&block| self.blocks.contains(block)) {
+        let held = |block: &&usize| self.blocks.binary_search(block).is_ok();
+        if let Some(&block) = other.blocks.iter().find(held) {
             let both = scenes_of(block, self.scenes);
             return Err(Error::Overlap { first: both.start, last: both.end - 1 });
         }
@@ -242,31 +250,11 @@ impl Part {
         let part: Self = PART.decode(bytes)?;
         part.basis.rig.validate()?;
         part.basis.hand.validate()?;
-        let beyond = part.blocks.last().is_some_and(|last| *last >= part.scenes.div_ceil(BLOCK));
-        if beyond || !part.blocks.is_sorted_by(|a, b| a < b) {
-            let reason = "its blocks are not in order".to_owned();
-            return Err(Error::FileContent { what: PART.what, reason });
-        }
+        part.check_numbers()?;
         let columns = part.basis.columns()?;
         // Sums refuse to be joined with those of other columns.
         Sums::new(&columns).merge(&part.sums)?;
         Ok(part)
-    }
-}
-
-/// Some scenes of others.
-struct Chosen<'a> {
-    all: &'a dyn Scenes,
-    numbers: Vec<usize>,
-}
-
-impl Scenes for Chosen<'_> {
-    fn count(&self) -> usize {
-        self.numbers.len()
-    }
-
-    fn scene(&self, number: usize) -> crate::Scene {
-        self.all.scene(self.numbers[number])
     }
 }
 

@@ -4,6 +4,8 @@ use glam::DAffine3;
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 
+use crate::regressor::evenly_spaced;
+
 /// One sample of training or testing: whose hand, in which pose, as which cameras see it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
@@ -61,5 +63,28 @@ impl Scenes for NominalScenes<'_> {
 
     fn scene(&self, number: usize) -> Scene {
         Scene::nominal(self.rig, self.hand, self.poses[number])
+    }
+}
+
+/// Some scenes of others, evenly spaced.
+pub struct EvenlySpaced<'a> {
+    all: &'a dyn Scenes,
+    numbers: Vec<usize>,
+}
+
+impl<'a> EvenlySpaced<'a> {
+    /// At most `most` of them.
+    pub fn new(all: &'a dyn Scenes, most: usize) -> Self {
+        Self { all, numbers: evenly_spaced(all.count(), most) }
+    }
+}
+
+impl Scenes for EvenlySpaced<'_> {
+    fn count(&self) -> usize {
+        self.numbers.len()
+    }
+
+    fn scene(&self, number: usize) -> Scene {
+        self.all.scene(self.numbers[number])
     }
 }

@@ -33,14 +33,16 @@ impl Shard {
     /// The blocks of this run, of so many scenes; none where there are more runs than blocks.
     pub(crate) fn blocks(self, scenes: usize) -> Range<usize> {
         let blocks = scenes.div_ceil(BLOCK);
-        let upto = |shards: usize| shards * blocks / self.count;
+        // No product of two lengths exceeds 128 bits.
+        let upto = |shards: usize| (shards as u128 * blocks as u128 / self.count as u128) as usize;
         upto(self.index - 1)..upto(self.index)
     }
 }
 
 /// The scenes of one block, of so many.
 pub(crate) fn scenes_of(block: usize, scenes: usize) -> Range<usize> {
-    block * BLOCK..((block + 1) * BLOCK).min(scenes)
+    let start = block.saturating_mul(BLOCK);
+    start..start.saturating_add(BLOCK).min(scenes)
 }
 
 #[cfg(test)]
@@ -59,6 +61,12 @@ mod tests {
             let held: Vec<usize> = blocks.iter().flat_map(|&block| scenes_of(block, scenes)).collect();
             prop_assert_eq!(held, (0..scenes).collect::<Vec<_>>());
         }
+    }
+
+    #[test]
+    fn more_shards_than_numbers_of_blocks_do_no_harm() {
+        let last = Shard::new(usize::MAX, usize::MAX).unwrap();
+        assert_eq!(last.blocks(5000), 4..5);
     }
 
     #[test]

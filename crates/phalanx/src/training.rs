@@ -9,7 +9,8 @@ use rayon::prelude::*;
 
 use crate::{Error, Estimator, OrientationRule, Progress, Regressor, Result, describe_poses};
 
-/// How an estimator is learnt. The default is the paper's recipe with dense kernel regression.
+/// How an estimator is learnt. The default is the paper's descriptor, turned to the forearm's axis,
+/// with dense kernel regression.
 ///
 /// Its kernels are wider and its penalty stronger than leave-one-out would choose: the left-out
 /// sample has neighbours in its own sequence, while a photographed hand has none, and narrow
@@ -38,6 +39,10 @@ impl Default for Training {
 }
 
 impl Training {
+    /// Most scenes whose shape contexts codebooks are learnt from where scenes stream by, evenly
+    /// spaced.
+    pub const CODEBOOK_SCENES: usize = 1000;
+
     /// Draws `poses` of the hand through the rig, describes them and learns an estimator. The
     /// same input gives the same estimator at any number of threads.
     ///

@@ -3,8 +3,8 @@
 use anyhow::{Context, Result};
 use faer::Mat;
 use phalanx::{
-    OrientationRule, PoseContexts, Progress, Scenes, ViewCodebooks, describe_each, describe_with,
-    targets,
+    EvenlySpaced, OrientationRule, PoseContexts, Progress, Scenes, Training, ViewCodebooks,
+    describe_each, describe_with, targets,
 };
 use phalanx_hand::Pose;
 use phalanx_multiview::Vocabulary;
@@ -15,9 +15,6 @@ use super::method::{Method, Predictor};
 use crate::described::Samples;
 use crate::sets::Set;
 use crate::table1::PaperCounts;
-
-/// Scenes, evenly spaced, whose shape contexts the codebooks are learnt from.
-const PILOT: usize = 1000;
 
 /// What has been learnt from one training set through some of the cameras.
 pub(crate) struct Learner {
@@ -75,7 +72,8 @@ pub(crate) fn pilot_contexts(
     rule: OrientationRule,
     progress: &dyn Progress,
 ) -> Result<Vec<PoseContexts>> {
-    let described = describe_each(set.rig, &EvenlySpaced::new(set, PILOT), rule, progress)?;
+    let described =
+        describe_each(set.rig, &EvenlySpaced::new(set, Training::CODEBOOK_SCENES), rule, progress)?;
     Ok(described.into_iter().filter_map(Result::ok).collect())
 }
 
@@ -90,28 +88,6 @@ pub(crate) fn codebooks(
         .map(|sample| views.iter().map(|&v| sample[v].as_slice()).collect())
         .collect();
     Ok(ViewCodebooks { views: views.to_vec(), codebooks: vocabulary.fit(&seen, BINS)? })
-}
-
-/// Some scenes of others.
-struct EvenlySpaced<'a> {
-    all: &'a Set<'a>,
-    count: usize,
-}
-
-impl<'a> EvenlySpaced<'a> {
-    fn new(all: &'a Set<'a>, most: usize) -> Self {
-        Self { all, count: all.count().min(most) }
-    }
-}
-
-impl Scenes for EvenlySpaced<'_> {
-    fn count(&self) -> usize {
-        self.count
-    }
-
-    fn scene(&self, number: usize) -> phalanx::Scene {
-        self.all.scene(number * self.all.count() / self.count)
-    }
 }
 
 /// What was seen of a set.

@@ -83,7 +83,9 @@ fn describe(
         let mask: GrayImage = image::open(&path).with_context(name)?.to_luma8();
         let (width, height) = (camera.intrinsics.width, camera.intrinsics.height);
         ensure!(
-            mask.width().abs_diff(mask.height() * width / height) <= 1,
+            u64::from(mask.width())
+                .abs_diff(u64::from(mask.height()) * u64::from(width) / u64::from(height))
+                <= 1,
             "{}: {}×{} is not the shape of the camera's {width}×{height}",
             name(),
             mask.width(),

@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum)]
     data_set: Option<TrainingSet>,
     /// How many samples the random sets have.
-    #[arg(long, value_name = "N", default_value_t = RANDOM_SAMPLES)]
+    #[arg(long, value_name = "N", default_value_t = RANDOM_SAMPLES, value_parser = sets::samples)]
     samples: usize,
     /// Damage the samples of `--data-set random`: other hands, moved cameras, ragged silhouettes.
     #[arg(long)]
@@ -72,7 +72,10 @@ pub(crate) struct Arguments {
     hand: Option<PathBuf>,
     /// Draw curves instead: error against training samples (500 to 50,000) and against codebook
     /// centres. This takes many minutes.
-    #[arg(long)]
+    #[arg(
+        long,
+        conflicts_with_all = ["data_set", "samples", "augment", "tests", "methods", "poses", "masks", "timing"]
+    )]
     curves: bool,
     /// Add microseconds per estimate, from three silhouettes to a pose, on one thread.
     #[arg(long)]
@@ -205,7 +208,6 @@ fn views(rig: &Rig) -> Vec<Vec<usize>> {
 
 fn training_sets<'a>(arguments: &Arguments, ground: &'a Ground) -> Result<Vec<Set<'a>>> {
     let Ground { rig, hand, .. } = ground;
-    ensure!(arguments.samples >= 100, "--samples: {} are too few to learn from", arguments.samples);
     let random = |augment| sets::random(rig, hand, arguments.samples, augment);
     ensure!(
         !arguments.augment || arguments.data_set == Some(TrainingSet::Random),

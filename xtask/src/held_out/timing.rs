@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use faer::Mat;
-use phalanx::{Describer, draw_silhouette};
+use phalanx::{Describer, SceneDescriber, Scenes};
 use phalanx_multiview::Scratch;
 use phalanx_segmentation::Silhouette;
 
@@ -13,7 +13,7 @@ use super::learner::Learner;
 use super::row::Row;
 use crate::sets::Test;
 
-/// Poses that are estimated again and again, and how often.
+/// Poses that are estimated again and again, at most, and how often.
 const POSES: usize = 50;
 const ROUNDS: usize = 5;
 
@@ -23,7 +23,8 @@ pub(crate) fn add(rows: &mut [Row], learners: &[Learner], ground: &Ground) -> Re
     let silhouettes = silhouettes(ground)?;
     for learner in learners {
         let views = learner.codebooks.views.len();
-        let describing = fastest(|| describe_all(learner, &silhouettes, ground))?;
+        let describing =
+            fastest(silhouettes.len(), || describe_all(learner, &silhouettes, ground))?;
         let x = describe_all(learner, &silhouettes, ground)?;
         for (method, predictor) in &learner.predictors {
             // One sample at a time, as in use: no help from other threads or from batches.
@@ -33,7 +34,7 @@ pub(crate) fn add(rows: &mut [Row], learners: &[Learner], ground: &Ground) -> Re
                 }
                 Ok(())
             };
-            let time = describing + fastest(predict_all)?;
+            let time = describing + fastest(x.ncols(), predict_all)?;
             let of_method = |row: &&mut Row| {
                 row.train == learner.train && row.views == views && row.method == method.name()
             };
@@ -46,31 +47,29 @@ pub(crate) fn add(rows: &mut [Row], learners: &[Learner], ground: &Ground) -> Re
 }
 
 /// Microseconds for each pose in the fastest round.
-fn fastest<T>(work: impl Fn() -> Result<T>) -> Result<f64> {
+fn fastest<T>(poses: usize, work: impl Fn() -> Result<T>) -> Result<f64> {
     let mut least = f64::INFINITY;
     for _ in 0..ROUNDS {
         let start = Instant::now();
         work()?;
         least = least.min(start.elapsed().as_secs_f64());
     }
-    Ok(1e6 * least / POSES as f64)
+    Ok(1e6 * least / poses as f64)
 }
 
-/// Of unseen motion, camera by camera.
+/// Of unseen motion, camera by camera; poses that some camera does not show are passed over.
 fn silhouettes(ground: &Ground) -> Result<Vec<Vec<Silhouette>>> {
     let set = Test::Unseen.set(&ground.rig, &ground.hand, &[]);
-    let rest = ground.rig.volume.rest_frame();
-    let step = set.poses.len() / POSES;
-    let poses = set.poses.iter().step_by(step).take(POSES);
-    poses
-        .map(|pose| {
-            let silhouette = |camera| -> Result<Silhouette> {
-                let mask = draw_silhouette(camera, &ground.hand, pose, &rest)?;
-                Ok(Silhouette::from_mask(&mask)?)
-            };
-            ground.rig.cameras.iter().map(silhouette).collect()
-        })
-        .collect()
+    let mut describer = SceneDescriber::new(&ground.rig, ground.rule)?;
+    let step = set.count() / POSES;
+    let mut seen = Vec::new();
+    for number in (0..set.count()).step_by(step) {
+        if let Ok(silhouettes) = describer.silhouettes(&set.scene(number)) {
+            seen.push(silhouettes.cloned().collect());
+        }
+    }
+    ensure!(!seen.is_empty(), "no pose of unseen motion can be seen by every camera");
+    Ok(seen)
 }
 
 fn describe_all(

@@ -72,6 +72,19 @@ fn merged_shards_are_the_bytes_of_one_run_at_any_number_of_threads() {
 }
 
 #[test]
+fn four_shards_of_kernel_regression_are_one_run() {
+    let scenes = Random::new(4200);
+    let nystrom = Regressor::Nystrom(Nystrom::default());
+    let bytes = |part: Part| part.finish().unwrap().to_bytes().unwrap();
+    let whole = bytes(scenes.shard(&nystrom, 1, 1).unwrap());
+    let mut merged = scenes.shard(&nystrom, 4, 4).unwrap();
+    for index in [2, 1, 3] {
+        merged.merge(scenes.shard(&nystrom, index, 4).unwrap()).unwrap();
+    }
+    assert!(bytes(merged) == whole);
+}
+
+#[test]
 fn a_missing_or_repeated_part_is_named() {
     let scenes = Random::new(1100);
     let first = scenes.shard(&linear(), 1, 2).unwrap();
