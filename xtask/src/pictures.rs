@@ -5,7 +5,10 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 use image::{RgbImage, imageops};
-use phalanx::{Picture, Progress, Segmenter, Training, Workspace, draw_overlay};
+use phalanx::{
+    OrientationRule, Picture, Progress, SceneDescriber, Scenes, Segmenter, Training, Workspace,
+    draw_overlay,
+};
 use phalanx::{draw_silhouette, working_window};
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{HandShape, Pose};
@@ -13,6 +16,8 @@ use phalanx_render::{Appearance, Renderer};
 use phalanx_segmentation::{Silhouette, SkinModel};
 
 use crate::data_set::{DataSet, at_seven_angles};
+use crate::mosaic::{mosaic, tinted};
+use crate::sets::Test;
 use crate::{files, progress};
 
 /// Which frames of `complex` are shown, and at which of the seven angles.
@@ -22,9 +27,15 @@ const SIZE: (u32, u32) = (320, 240);
 /// A panel of the README's picture, px.
 const PANEL: (u32, u32) = (200, 150);
 
+/// Which samples of the held-out tests are shown.
+const HELD_OUT_SHOWN: [usize; 3] = [150, 750, 1350];
+/// The colour of a silhouette.
+const HAND: [u8; 3] = [222, 222, 222];
+
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Where the pictures go: one photograph for each camera of the desk, and `estimates.png`.
+    /// Where the pictures go: one photograph for each camera of the desk, `estimates.png`, and
+    /// `held-out.png`.
     #[arg(long, value_name = "DIR", default_value = "docs/pictures")]
     out: PathBuf,
 }
@@ -48,7 +59,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let sheet = estimates(&shown, &rig, &hand, &bar)?;
     drop(bar);
     files::write_png(&arguments.out.join("estimates.png"), &sheet)?;
+    files::write_png(&arguments.out.join("held-out.png"), &held_out(&rig, &hand)?)?;
     files::print(&format!("{}\n", arguments.out.display()))
+}
+
+/// One row for each of the held-out tests, one panel for each camera: a few samples of each.
+fn held_out(rig: &Rig, hand: &HandShape) -> Result<RgbImage> {
+    let mut describer = SceneDescriber::new(rig, OrientationRule::default())?;
+    let mut panels = Vec::new();
+    for test in Test::SYNTHETIC {
+        let set = test.set(rig, hand, &[]);
+        for number in HELD_OUT_SHOWN {
+            let silhouettes = describer.silhouettes(&set.scene(number))?;
+            panels.extend(silhouettes.map(|silhouette| tinted(&silhouette.mask, HAND)));
+        }
+    }
+    Ok(mosaic(&panels, (HELD_OUT_SHOWN.len() * rig.cameras.len()) as u32, 3))
 }
 
 /// The posed hand as one camera would photograph it.

@@ -277,3 +277,52 @@ fn targets_of(scenes: &dyn Scenes, numbers: &[usize]) -> Mat<f64> {
     let poses: Vec<_> = numbers.iter().map(|&number| scenes.scene(number).pose).collect();
     targets(&poses)
 }
+
+#[cfg(test)]
+mod tests {
+    use phalanx_hand::Pose;
+    use phalanx_rvm::Ridge;
+
+    use super::*;
+    use crate::{NominalScenes, Silent};
+
+    fn part() -> Part {
+        let rig = Rig::from_toml(include_str!("../../../fixtures/rigs/desk.toml")).unwrap();
+        let rig = rig.select(&["top"]).unwrap();
+        let hand = HandShape::adult();
+        let poses: Vec<Pose> = (0..24)
+            .map(|k| {
+                let mut pose = Pose::REST;
+                pose[Dof::ThetaZ] = 0.06 * f64::from(k);
+                pose
+            })
+            .collect();
+        let mut training =
+            Training { regressor: Regressor::Ridge(Ridge::default()), ..Training::default() };
+        training.vocabulary.centres = 10;
+        training.vocabulary.most_samples = 500;
+        let scenes = NominalScenes { rig: &rig, hand: &hand, poses: &poses };
+        training.shard(&rig, &hand, &scenes, Shard::WHOLE, &Silent).unwrap()
+    }
+
+    #[test]
+    fn parts_that_contradict_themselves_are_refused() {
+        let good = part();
+        assert_eq!(Part::from_bytes(&good.to_bytes().unwrap()).unwrap(), good);
+        let spoils: [fn(&mut Part); 6] = [
+            |part| part.blocks = vec![0, 0],
+            |part| part.blocks = vec![1],
+            |part| part.left_out = usize::MAX,
+            |part| part.basis.pilot.swap(0, 1),
+            |part| part.basis.pilot_x.truncate(3),
+            |part| part.scenes = usize::MAX,
+        ];
+        for (k, spoil) in spoils.into_iter().enumerate() {
+            let mut spoilt = good.clone();
+            spoil(&mut spoilt);
+            let error = Part::from_bytes(&spoilt.to_bytes().unwrap()).unwrap_err();
+            let named = matches!(error, Error::FileContent { .. } | Error::Mismatch { .. });
+            assert!(named, "spoil {k}: {error}");
+        }
+    }
+}

@@ -111,7 +111,10 @@ impl SceneDescriber {
     ///
     /// # Errors
     /// Another number of views than cameras, or one that cannot be seen.
-    pub fn silhouettes(&mut self, scene: &Scene) -> Result<impl Iterator<Item = &Silhouette>> {
+    pub fn silhouettes<'a>(
+        &'a mut self,
+        scene: &Scene,
+    ) -> Result<impl Iterator<Item = &'a Silhouette> + use<'a>> {
         self.see(scene)?;
         Ok(self.views.iter().map(|view| &view.silhouette))
     }

@@ -96,3 +96,75 @@ fn describe(
     };
     ground.rig.cameras.iter().map(view).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use phalanx::{OrientationRule, SceneDescriber, Scenes, draw_silhouette};
+    use phalanx_hand::{Dof, write_poses};
+
+    use super::*;
+    use crate::sets::Test;
+
+    /// A folder of its own, which goes with the test.
+    struct Folder(PathBuf);
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = std::fs::remove_dir_all(&self.0);
+        }
+    }
+
+    fn ground() -> Ground {
+        let (rig, hand) = (files::rig(None).unwrap(), files::hand(None).unwrap());
+        Ground { rig, hand, rule: OrientationRule::default() }
+    }
+
+    /// Silhouettes of three unseen poses, frame by frame.
+    fn write(name: &str, ground: &Ground) -> (Folder, Vec<Pose>) {
+        let folder = Folder(std::env::temp_dir().join(format!("{name}-{}", std::process::id())));
+        let set = Test::Unseen.set(&ground.rig, &ground.hand, &[]);
+        let poses = set.poses[..3].to_vec();
+        let rest = ground.rig.volume.rest_frame();
+        for camera in &ground.rig.cameras {
+            std::fs::create_dir_all(folder.0.join(&camera.name)).unwrap();
+            for (frame, pose) in poses.iter().enumerate() {
+                let mask = draw_silhouette(camera, &ground.hand, pose, &rest).unwrap();
+                let path = folder.0.join(&camera.name).join(format!("{frame}.png"));
+                mask.save(path).unwrap();
+            }
+        }
+        let truth = std::fs::File::create(folder.0.join("poses.csv")).unwrap();
+        write_poses(truth, &poses, &Dof::ALL).unwrap();
+        (folder, poses)
+    }
+
+    #[test]
+    fn masks_from_files_are_described_as_drawn_ones() {
+        let ground = ground();
+        let (folder, poses) = write("masks-described", &ground);
+        let masks = Masks::read(&folder.0, &ground).unwrap();
+        assert_eq!(masks.left_out, 0);
+        let mut describer = SceneDescriber::new(&ground.rig, ground.rule).unwrap();
+        let set = Test::Unseen.set(&ground.rig, &ground.hand, &[]);
+        for (frame, contexts) in masks.contexts.iter().enumerate() {
+            assert_eq!(*contexts, describer.contexts(&set.scene(frame)).unwrap());
+            for dof in Dof::ALL {
+                assert!((masks.poses[frame][dof] - poses[frame][dof]).abs() < 1e-6, "{dof}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_missing_mask_is_left_out_and_a_missing_truth_refused() {
+        let ground = ground();
+        let (folder, _) = write("masks-missing", &ground);
+        std::fs::remove_file(folder.0.join("top").join("1.png")).unwrap();
+        let masks = Masks::read(&folder.0, &ground).unwrap();
+        assert_eq!((masks.left_out, masks.poses.len()), (1, 2));
+        std::fs::remove_file(folder.0.join("poses.csv")).unwrap();
+        let error = Masks::read(&folder.0, &ground).err().map(|error| format!("{error:#}"));
+        assert!(error.is_some_and(|error| error.contains("poses.csv")));
+    }
+}

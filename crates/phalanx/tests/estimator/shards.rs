@@ -73,7 +73,7 @@ fn merged_shards_are_the_bytes_of_one_run_at_any_number_of_threads() {
 
 #[test]
 fn four_shards_of_kernel_regression_are_one_run() {
-    let scenes = Random::new(4200);
+    let scenes = Random::new(1100);
     let nystrom = Regressor::Nystrom(Nystrom::default());
     let bytes = |part: Part| part.finish().unwrap().to_bytes().unwrap();
     let whole = bytes(scenes.shard(&nystrom, 1, 1).unwrap());
