@@ -1,5 +1,6 @@
 //! `cargo xtask headline`: the README's table, Table 1 beside what was never seen.
 
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
@@ -107,7 +108,7 @@ fn table(rows: &[Row]) -> Result<String> {
             format!("{:.1}° ({:.2})", row.mae_deg, row.mae_deg / row.mean_predictor_mae_deg)
         });
         let Line { learnt, tested, .. } = line;
-        table += &format!("| {learnt} | {tested} | {guess:.1}° | {one} | {three} | {dense} |\n");
+        writeln!(table, "| {learnt} | {tested} | {guess:.1}° | {one} | {three} | {dense} |")?;
     }
     Ok(table)
 }
