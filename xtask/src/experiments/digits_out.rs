@@ -222,7 +222,8 @@ impl Gallery {
             let mask = draw_silhouette(camera, &scene.hand, &scene.pose, rest)?;
             // The fingers point upwards in the photographs, and to the right in the view.
             let upright = imageops::rotate270(&mask);
-            pairs.push((photographs[places[shown]].image.clone(), tinted(&upright, [86, 180, 233])));
+            pairs
+                .push((photographs[places[shown]].image.clone(), tinted(&upright, [86, 180, 233])));
         }
         let rows = pairs.chunks(COLUMNS).flat_map(|row| {
             let (photographs, neighbours): (Vec<_>, Vec<_>) = row.iter().cloned().unzip();

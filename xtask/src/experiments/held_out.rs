@@ -116,7 +116,10 @@ fn finding(rows: &[Row], split: [f64; 2]) -> Result<Finding> {
         ],
         tables: tables(rows),
         figures: vec![Figure::chart(
-            format!("Tests: {}. Three views; an error of 1 is guessing the mean.", numbered_tests()),
+            format!(
+                "Tests: {}. Three views; an error of 1 is guessing the mean.",
+                numbered_tests()
+            ),
             &chart(rows),
         )?],
         json: json!({ "rows": rows, "even_split": { "both": split[0], "kernel": split[1] } }),

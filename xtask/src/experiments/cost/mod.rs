@@ -24,7 +24,7 @@ pub(crate) const EXPERIMENT: Experiment = Experiment {
     run,
 };
 
-/// A time whose exponent is within this of 0 does not grow.
+/// A time whose exponent is below this does not grow.
 const FLAT: f64 = 0.25;
 
 fn run(lab: &Lab<'_>) -> Result<Finding> {
@@ -38,8 +38,8 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
     let [lin, gauss, both] = stages.estimate;
     let claims = [
         (0.75..1.25).contains(&describing),
-        estimating.abs() < FLAT,
-        estimating_shared.abs() < FLAT,
+        estimating < FLAT,
+        estimating_shared < FLAT,
         lin.max(gauss).max(both) < 1e-4,
         lin < both && both < gauss,
         stages.dearest_fit <= stages.clustering,
