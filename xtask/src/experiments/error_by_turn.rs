@@ -1,6 +1,6 @@
 //! § 5.2: how the error grows as the hand turns its side to the single camera.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use faer::Mat;
 use phalanx_hand::Dof;
 use rayon::prelude::*;
@@ -79,7 +79,7 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
          predictor's error is the same at all of them but for the chance of the split."
             .to_owned(),
     ];
-    notes.push(causes(&one, &three));
+    notes.push(causes(&one, &three)?);
     Ok(Finding {
         verdict: Verdict::of(&claims),
         sentence: format!(
@@ -139,10 +139,11 @@ impl Judgement {
 }
 
 /// Whether it is the view or the regressor that the error grows with.
-fn causes(one: &[&Curve], three: &[&Curve]) -> String {
+fn causes(one: &[&Curve], three: &[&Curve]) -> Result<String> {
     let dense = |curves: &[&Curve], set: &str| {
         let mut dense = curves.iter().filter(|c| c.method == TableMethod::KernelRidge.name());
-        dense.find(|c| c.set == set).map_or(f64::NAN, |c| c.growth().value)
+        let found = dense.find(|c| c.set == set).context("dense kernels have no curve")?;
+        anyhow::Ok(found.growth().value)
     };
     // The first turn against those in the middle, where every view is as good as at the first.
     let edge = |curve: &&Curve| {
@@ -150,17 +151,17 @@ fn causes(one: &[&Curve], three: &[&Curve]) -> String {
         mean[0] * 3.0 / mean[1..4].iter().sum::<f64>()
     };
     let edges = one.iter().chain(three).map(edge).sum::<f64>() / (one.len() + three.len()) as f64;
-    format!(
-        "Two things are mixed in a sparse regressor's curve. One is what the camera sees: a dense \
-         regressor that keeps all samples grows by {:.2} on open-close and {:.2} on complex with \
-         one view, {:.2} and {:.2} with three. The other is that both ends of the trained range \
-         have neighbours on one side only: at 0°, where the top view is at its best, the error is \
-         already {edges:.2} times that from 15° to 45°.",
-        dense(one, "open-close"),
-        dense(one, "complex"),
-        dense(three, "open-close"),
-        dense(three, "complex")
-    )
+    Ok(format!(
+        "Two things may be mixed in a sparse regressor's curve. One is what the camera sees: a dense \
+         regressor that keeps all samples has {:.2} times the error on open-close and {:.2} times on \
+         complex with one view, {:.2} and {:.2} times with three. The other is that both ends of the \
+         trained range have neighbours on one side only: at 0°, which is such an end, the error is \
+         {edges:.2} times that from 15° to 45°, in the mean of all curves.",
+        dense(one, "open-close")?,
+        dense(one, "complex")?,
+        dense(three, "open-close")?,
+        dense(three, "complex")?
+    ))
 }
 
 /// The curves of all methods with some cameras.

@@ -65,7 +65,8 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
         notes: vec![
             "The paper's axis ends at the furthest contour point, which changes finger; the border cuts the \
              forearm obliquely and at another length as the camera rolls; and pixels lie denser along slanting \
-             lines. The forearm's axis is free of all three."
+             lines. The forearm's axis is built to be free of all \
+             three."
                 .to_owned(),
         ],
         tables: vec![table],

@@ -9,6 +9,7 @@ use phalanx_rvm::{Bridges, Kernel, Stop};
 use phalanx_shape_context::BINS;
 use serde_json::json;
 
+use super::statistics::Mean;
 use super::voting_places::{Place, along_the_hand, places, silhouette};
 use super::{Experiment, Figure, Finding, Table, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
@@ -51,6 +52,8 @@ struct Selection {
     kept: Vec<(Feature, Place)>,
     /// Of all centres that might have been kept, how many are near the wrist.
     near_the_wrist: f64,
+    /// Centres of each view.
+    a_view: usize,
 }
 
 fn run(lab: &Lab<'_>) -> Result<Finding> {
@@ -70,9 +73,17 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
         selection.kept.iter().filter(|(feature, _)| feature.camera == top).count() == 1
     };
     let mixed = three.iter().filter(is_top_and_side).count();
+    // Of two features taken blindly; and the standard deviation of the splits' share by chance.
+    let [of_top, of_side] = [1, lab.rig.cameras.len() - 1].map(|n| (n * three[0].a_view) as f64);
+    let all = of_top + of_side;
+    let chance = 2.0 * of_top * of_side / (all * (all - 1.0));
+    let deviation = (chance * (1.0 - chance) / three.len() as f64).sqrt();
     let near = [Nearness::of(&three), Nearness::of(&one)];
-    let claims =
-        [2 * mixed > three.len(), near[0].is_as_the_paper_says(), near[1].is_as_the_paper_says()];
+    let claims = [
+        mixed as f64 / three.len() as f64 > chance + 2.0 * deviation,
+        near[0].more.is_above(0.0),
+        near[1].more.is_above(0.0),
+    ];
     let selections: Vec<&Selection> = three.iter().chain(&one).collect();
     let mut figures = vec![silhouettes(lab, described, &three[0])?];
     for (feature, _) in &three[0].kept {
@@ -82,15 +93,22 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
         verdict: Verdict::of(&claims),
         sentence: format!(
             "In {mixed} of {} splits the two features kept of three views are one of the top and one \
-             of a side view; {} of the centres kept of three views and {} of one draw their votes \
-             from nearer the wrist than the tip, as {:.0} % and {:.0} % of all centres do; the votes \
+             of a side view (by chance {:.0} ± {:.0} %); {} of the centres kept of three views and {} of one draw their votes \
+             from nearer the wrist than the tip, as {:.0} % and {:.0} % of all centres do (in the mean over the splits {:+.0} ± {:.0} and \
+             {:+.0} ± {:.0} points more); the votes \
              come from {:.0} mm and {:.0} mm from the wrist, where the mean contour point is {:.0} mm \
              from it.",
             three.len(),
+            100.0 * chance,
+            100.0 * deviation,
             near[0].kept(),
             near[1].kept(),
             100.0 * near[0].of_all,
             100.0 * near[1].of_all,
+            100.0 * near[0].more.value,
+            100.0 * near[0].more.standard_error,
+            100.0 * near[1].more.value,
+            100.0 * near[1].more.standard_error,
             mean_of(&three, |place| place.from_wrist),
             mean_of(&one, |place| place.from_wrist),
             mean_of(&three, |place| place.all_from_wrist),
@@ -98,8 +116,10 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
         notes: vec![
             "Distances are along the forearm's direction in the camera's image, weighted by the \
              votes over all poses; that from the tips is from the foremost point of each contour, \
-             be it a knuckle of a fist. The claim is taken to hold when more of the kept centres are \
-             nearer the wrist than of all centres, by two standard errors."
+             be it a knuckle of a fist. The claims are taken to hold when a larger share of the kept \
+             centres than of all is nearer the wrist, by two standard errors over the splits, and when \
+             more splits keep one of the top and one of a side view than by chance, by two standard \
+             deviations."
                 .to_owned(),
             format!(
                 "With two features a single selection says little: of two centres taken blindly both \
@@ -134,12 +154,13 @@ fn select(
             (Feature { camera, centre, codebook: codebook.clone(), voting }, place)
         }));
     }
+    let a_view = features.len() / views.len();
     let near = features.iter().filter(|(_, place)| place.is_near_the_wrist()).count();
     let near_the_wrist = near as f64 / features.len() as f64;
     let selected = fit.model.selected_features();
     let kept = features.into_iter().enumerate().filter(|(k, _)| selected.contains(k));
     let kept = kept.map(|(_, feature)| feature).collect();
-    Ok(Selection { words, split, kept, near_the_wrist })
+    Ok(Selection { words, split, kept, near_the_wrist, a_view })
 }
 
 impl Feature {
@@ -160,23 +181,25 @@ struct Nearness {
     kept: usize,
     /// Share of all features that are.
     of_all: f64,
+    /// By how much the kept ones' share is above it, over the splits.
+    more: Mean,
 }
 
 impl Nearness {
     fn of(selections: &[Selection]) -> Self {
-        let places = || selections.iter().flat_map(|s| s.kept.iter().map(|(_, place)| place));
+        let near = |selection: &Selection| {
+            selection.kept.iter().filter(|(_, place)| place.is_near_the_wrist()).count()
+        };
+        let more = |selection: &Selection| {
+            near(selection) as f64 / selection.kept.len() as f64 - selection.near_the_wrist
+        };
         let of_all = selections.iter().map(|selection| selection.near_the_wrist).sum::<f64>();
         Self {
-            near: places().filter(|place| place.is_near_the_wrist()).count(),
-            kept: places().count(),
+            near: selections.iter().map(near).sum(),
+            kept: selections.iter().map(|selection| selection.kept.len()).sum(),
             of_all: of_all / selections.len() as f64,
+            more: Mean::of(&selections.iter().map(more).collect::<Vec<_>>()),
         }
-    }
-
-    /// Whether more of the kept ones are than of all, by two standard errors or more.
-    fn is_as_the_paper_says(&self) -> bool {
-        let error = (self.of_all * (1.0 - self.of_all) / self.kept as f64).sqrt();
-        self.near as f64 / self.kept as f64 > self.of_all + 2.0 * error
     }
 
     fn kept(&self) -> String {

@@ -1,6 +1,6 @@
 //! Table 1: the errors of the three regressors, with each camera alone beside it.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use phalanx_hand::Dof;
 use serde::Serialize;
 use serde_json::json;
@@ -43,6 +43,11 @@ impl Contest {
         1.0 - self.all / single
     }
 
+    /// How many cameras there are.
+    fn views(&self) -> usize {
+        self.alone.len()
+    }
+
     fn best(&self) -> f64 {
         self.alone.iter().copied().fold(f64::INFINITY, f64::min)
     }
@@ -63,14 +68,14 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
         let rows = table1::evaluate_equally(described, &others, all.len(), lab.progress)?;
         alone.extend(named(lab, &others, rows));
     }
-    let contests = contests(lab, &standing, &alone);
+    let contests = contests(lab, &standing, &alone)?;
     let (claims, sentence) = judged(single, &standing, &contests);
     let tables = vec![
         as_it_stands(&standing, "paper"),
         as_it_stands(&standing, "equal"),
         each_alone(lab, &contests),
     ];
-    let notes = notes(&lab.rig.cameras[single].name, &standing, &contests);
+    let notes = notes(&lab.rig.cameras[single].name, &standing, &contests)?;
     standing.extend(alone);
     Ok(Finding {
         verdict: Verdict::of(&claims),
@@ -91,7 +96,7 @@ fn named(lab: &Lab<'_>, choices: &[Vec<usize>], rows: Vec<Row>) -> Vec<Seen> {
 }
 
 /// Every method on both data sets, at the counts of all views.
-fn contests(lab: &Lab<'_>, standing: &[Seen], alone: &[Seen]) -> Vec<Contest> {
+fn contests(lab: &Lab<'_>, standing: &[Seen], alone: &[Seen]) -> Result<Vec<Contest>> {
     let mae = |data_set: &str, kernels: &str, cameras: &[String]| {
         let found = standing.iter().chain(alone).find(|Seen { cameras: of, row }| {
             of == cameras
@@ -99,18 +104,19 @@ fn contests(lab: &Lab<'_>, standing: &[Seen], alone: &[Seen]) -> Vec<Contest> {
                 && row.data_set == data_set
                 && row.kernels == kernels
         });
-        found.map_or(f64::NAN, |seen| seen.row.mae_deg)
+        let missing = || format!("no row of {kernels} on {data_set} for {cameras:?}");
+        found.map(|seen| seen.row.mae_deg).with_context(missing)
     };
     let names: Vec<String> = lab.rig.cameras.iter().map(|camera| camera.name.clone()).collect();
     let contest = |data_set: &str, method: TableMethod| {
         let kernels = method.name();
         let alone = names.iter().map(|name| mae(data_set, kernels, std::slice::from_ref(name)));
-        Contest {
+        Ok(Contest {
             data_set: data_set.to_owned(),
             kernels,
-            alone: alone.collect(),
-            all: mae(data_set, kernels, &names),
-        }
+            alone: alone.collect::<Result<_>>()?,
+            all: mae(data_set, kernels, &names)?,
+        })
     };
     ["open-close", "complex"]
         .iter()
@@ -156,18 +162,23 @@ fn one_view_open_close(standing: &[Seen]) -> impl Iterator<Item = &Row> {
     })
 }
 
-fn notes(single: &str, standing: &[Seen], contests: &[Contest]) -> Vec<String> {
+fn notes(single: &str, standing: &[Seen], contests: &[Contest]) -> Result<Vec<String>> {
     let paper = |views: usize, contest: &Contest| {
         let mut rows = standing.iter().map(|seen| &seen.row);
         let is = |row: &&Row| {
             (row.views, row.counts, row.kernels) == (views, "paper", contest.kernels)
                 && row.data_set == contest.data_set
         };
-        rows.find(is).map_or(f64::NAN, |row| row.mae_deg)
+        let missing = || format!("no row of {views} views for {}", contest.kernels);
+        rows.find(is).map(|row| row.mae_deg).with_context(missing)
     };
+    let pair =
+        |contest| Ok((contest, paper(1, contest)?, paper(Contest::views(contest), contest)?));
     let lost: Vec<String> = contests
         .iter()
-        .map(|contest| (contest, paper(1, contest), paper(contest.alone.len(), contest)))
+        .map(pair)
+        .collect::<Result<Vec<_>>>()?
+        .into_iter()
         .filter(|(_, one, all)| all >= one)
         .map(|(contest, one, all)| {
             format!("{} on {} ({one:.2}° → {all:.2}°)", contest.kernels, contest.data_set)
@@ -184,7 +195,7 @@ fn notes(single: &str, standing: &[Seen], contests: &[Contest]) -> Vec<String> {
             lost.join(" and ")
         ));
     }
-    notes
+    Ok(notes)
 }
 
 /// The table as the paper has it, at its counts or at equal ones.

@@ -1,6 +1,6 @@
 //! Fig. 6: how many vectors survive a threshold.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use phalanx_rvm::{Bridges, Kernel, Stop, Width};
 use rayon::prelude::*;
 use serde_json::json;
@@ -42,9 +42,9 @@ struct Curves {
     one: Vec<f64>,
     three: Vec<f64>,
     /// Of the splits' thresholds at which the two differ, the share where one view keeps more:
-    /// of all, and of those that decide.
-    share: f64,
-    deciding_share: f64,
+    /// of all, and of those that decide. None where they never differ.
+    share: Option<f64>,
+    deciding_share: Option<f64>,
 }
 
 fn run(lab: &Lab<'_>) -> Result<Finding> {
@@ -146,21 +146,24 @@ impl Tally {
         self.apart += usize::from(one != three);
     }
 
-    fn share(&self) -> f64 {
-        self.more as f64 / self.apart.max(1) as f64
+    fn share(&self) -> Option<f64> {
+        (self.apart > 0).then(|| self.more as f64 / self.apart as f64)
     }
 }
 
 fn finding(curves: &[Curves]) -> Result<Finding> {
     let drawn: Vec<&Curves> = curves.iter().filter(|curve| curve.nu == NU[0]).collect();
-    let claims: Vec<bool> = drawn
-        .iter()
-        .flat_map(|curve| [0.5, NEARLY_ALWAYS].map(|share| curve.deciding_share >= share))
-        .collect();
-    let shares: Vec<String> = drawn
-        .iter()
-        .map(|curve| format!("{:.0} % with {} columns", 100.0 * curve.deciding_share, curve.kernel))
-        .collect();
+    let share = |curve: &&Curves| {
+        let share = curve.deciding_share;
+        share.with_context(|| format!("no threshold tells the {} columns apart", curve.kernel))
+    };
+    let shares = drawn.iter().map(share).collect::<Result<Vec<f64>>>()?;
+    let claims: Vec<bool> =
+        shares.iter().flat_map(|share| [0.5, NEARLY_ALWAYS].map(|least| *share >= least)).collect();
+    let words = |(share, curve): (&f64, &&Curves)| {
+        format!("{:.0} % with {} columns", 100.0 * share, curve.kernel)
+    };
+    let shares: Vec<String> = shares.iter().zip(&drawn).map(words).collect();
     let figures = drawn.iter().map(|curve| {
         let caption =
             format!("{} columns, ν = {:e}, mean of {SPLITS} splits.", curve.kernel, curve.nu);
@@ -194,6 +197,9 @@ fn table(curves: &[Curves]) -> (Table, Vec<serde_json::Value>) {
         ),
         ["columns", "ν", "kept", "", "", "more, where T decides", "anywhere"],
     );
+    let percent = |share: Option<f64>| {
+        share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share))
+    };
     let mut rows = Vec::new();
     for curve in curves {
         let at = |t: usize| {
@@ -205,8 +211,8 @@ fn table(curves: &[Curves]) -> (Table, Vec<serde_json::Value>) {
             at(0),
             at(6),
             at(8),
-            format!("{:.0} %", 100.0 * curve.deciding_share),
-            format!("{:.0} %", 100.0 * curve.share),
+            percent(curve.deciding_share),
+            percent(curve.share),
         ]);
         for (t, &threshold) in curve.thresholds.iter().enumerate() {
             rows.push(json!({

@@ -12,7 +12,9 @@ const READINGS: usize = 5;
 /// Seconds that work takes, the median of several readings of as many calls as fill a
 /// stretch.
 pub(super) fn seconds(mut work: impl FnMut() -> Result<()>) -> Result<f64> {
-    let once = seconds_once(&mut work)?.max(1e-9);
+    let begin = Instant::now();
+    work()?;
+    let once = begin.elapsed().as_secs_f64().max(1e-9);
     let calls = (STRETCH.as_secs_f64() / once).ceil().clamp(1.0, 1e5) as usize;
     let mut reading = || {
         let begin = Instant::now();
@@ -24,13 +26,6 @@ pub(super) fn seconds(mut work: impl FnMut() -> Result<()>) -> Result<f64> {
     let mut readings = (0..READINGS).map(|_| reading()).collect::<Result<Vec<_>>>()?;
     readings.sort_unstable_by(f64::total_cmp);
     Ok(readings[READINGS / 2])
-}
-
-/// Seconds that work takes, done once.
-pub(super) fn seconds_once(mut work: impl FnMut() -> Result<()>) -> Result<f64> {
-    let begin = Instant::now();
-    work()?;
-    Ok(begin.elapsed().as_secs_f64())
 }
 
 /// How a time grows with a size: the exponent of the power law that fits best, by least squares

@@ -5,14 +5,17 @@ use std::hint::black_box;
 use anyhow::{Context, Result};
 use faer::Mat;
 use phalanx_codebook::{Codebook, Voting};
-use phalanx_rvm::{KernelRidge, Lambda, Width};
+use phalanx_hand::Pose;
+use phalanx_multiview::{Concatenation, Vocabulary};
+use phalanx_rvm::{KernelRidge, Lambda, Model, Width};
 use phalanx_segmentation::Silhouette;
 use phalanx_shape_context::{BINS, Orientation, ShapeContexts};
 
 use super::clock::{exponent, seconds};
 use super::stages::estimate;
-use crate::described::{Described, Halves};
+use crate::described::{Described, Halves, vocabulary};
 use crate::lab::Lab;
+use crate::split::Split;
 use crate::table1::{PaperCounts, TableMethod};
 
 /// Times of one stage at rising sizes.
@@ -46,9 +49,9 @@ impl Growth {
 
 pub(super) fn run(lab: &Lab<'_>, halves: &Halves) -> Result<Vec<Group>> {
     let described = lab.complex()?;
-    let outline = Outline::of(lab)?;
+    let outline = Outline::of(lab, lab.single()?)?;
     Ok(vec![
-        cameras(described, &outline, halves)?,
+        cameras(lab)?,
         contour_points(described, &outline)?,
         centres(described)?,
         training_samples(halves)?,
@@ -63,16 +66,16 @@ struct Outline {
 }
 
 impl Outline {
-    fn of(lab: &Lab<'_>) -> Result<Self> {
-        let camera = &lab.rig.cameras[lab.single()?];
+    /// What a camera sees of the first pose of complex.
+    fn of(lab: &Lab<'_>, view: usize) -> Result<Self> {
         let pose = &lab.complex()?.poses[0];
         let rest = lab.rig.volume.rest_frame();
-        let mask = phalanx::draw_silhouette(camera, &lab.hand, pose, &rest)?;
+        let mask = phalanx::draw_silhouette(&lab.rig.cameras[view], &lab.hand, pose, &rest)?;
         let Silhouette { contour, forearm, .. } = Silhouette::from_mask(&mask)?;
         Ok(Self { points: contour.points, forearm_end: forearm.end })
     }
 
-    /// So many points, evenly along the list of the contour's.
+    /// So many points, evenly spaced along the list of the contour's.
     fn points(&self, count: usize) -> Vec<[f64; 2]> {
         let last = self.points.len() - 1;
         let point = |k: usize| {
@@ -97,35 +100,65 @@ fn codebook(described: &Described, centres: usize) -> Result<Codebook> {
     Ok(Codebook::from_parts((0..centres).flat_map(centre).collect(), BINS, 0.1)?)
 }
 
-/// Describes one silhouette for each camera, and estimates a pose from 90 numbers, however many
-/// cameras they come from.
-fn cameras(described: &Described, outline: &Outline, halves: &Halves) -> Result<Group> {
-    let (points, orientation) = (outline.points(300), outline.orientation());
+/// What is learnt from some of the cameras at a number of centres for each: the codebooks, and the
+/// regressor of the joined descriptors, with one to estimate from.
+struct Learnt {
+    codebooks: Concatenation,
+    model: Model,
+    x: Vec<f64>,
+}
+
+impl Learnt {
+    fn from(described: &Described, views: &[usize], centres: usize) -> Result<Self> {
+        let split = Split::even(described.poses.len(), 0);
+        let vocabulary = Vocabulary { centres, ..vocabulary(0) };
+        let seen = described.seen(views, &split.train);
+        let codebooks = vocabulary.fit(&seen, BINS)?;
+        let poses: Vec<Pose> = split.train.iter().map(|&i| described.poses[i]).collect();
+        let train = phalanx::descriptors(&codebooks, &seen)?;
+        let test = phalanx::descriptors(&codebooks, &described.seen(views, &split.test[..1]))?;
+        let counts = PaperCounts::paper(3, &described.name);
+        let regressor = TableMethod::Gauss.regressor(counts).context("it fits nothing")?;
+        let model = regressor.fit(&train, &phalanx::targets(&poses))?.model;
+        Ok(Self { codebooks, model, x: test.col(0).iter().copied().collect() })
+    }
+}
+
+/// Describes what each of the cameras sees, and estimates a pose from it with the model of those
+/// cameras: at the same number of centres for each camera, and at 90 shared out among them.
+fn cameras(lab: &Lab<'_>) -> Result<Group> {
+    let (described, views) = (lab.complex()?, lab.all_views());
+    let of_view = |&view: &usize| Outline::of(lab, view);
+    let outlines = views.iter().map(of_view).collect::<Result<Vec<_>>>()?;
+    let seen: Vec<_> = outlines.iter().map(|o| (o.points(300), o.orientation())).collect();
     let mut contexts = ShapeContexts::new();
     let mut scratch = phalanx_codebook::Scratch::default();
-    let mut describe = |cameras: usize, centres: usize| {
-        let (codebook, mut x) = (codebook(described, centres)?, vec![0.0; centres]);
+    let mut describe = |learnt: &Learnt| {
+        let voting = learnt.codebooks.voting();
         seconds(|| {
-            for _ in 0..cameras {
-                let seen = contexts.compute(black_box(&points), orientation)?;
-                codebook.soft_assign(seen.values(), Voting::default(), &mut scratch, &mut x)?;
+            for ((points, orientation), codebook) in seen.iter().zip(learnt.codebooks.codebooks()) {
+                let mut x = vec![0.0; codebook.len()];
+                let values = contexts.compute(black_box(points), *orientation)?.values();
+                codebook.soft_assign(values, voting, &mut scratch, &mut x)?;
+                black_box(&x);
             }
             Ok(())
         })
     };
-    let counts = PaperCounts::paper(3, &described.name);
-    let regressor = TableMethod::Gauss.regressor(counts).context("it fits nothing")?;
-    let model = regressor.fit(&halves.train.x, &halves.train.y)?.model;
-    let x: Vec<f64> = halves.test.x.col(0).iter().copied().collect();
-    let sizes = [1, 2, 3, 5, 6];
-    Ok(Group {
-        with: "cameras",
-        growths: vec![
-            Growth::over("descriptor, 30 centres each", &sizes, |count| describe(count, 30))?,
-            Growth::over("descriptor, 90 shared", &sizes, |count| describe(count, 90 / count))?,
-            Growth::over("pose", &sizes, |_| estimate(&model, &x))?,
-        ],
-    })
+    let counts: Vec<usize> = (1..=views.len()).collect();
+    let mut growths = Vec::new();
+    let of_cameras: [(_, _, fn(usize) -> usize); 2] = [
+        ("descriptors, 30 centres each", "pose, 30 centres each", |_| 30),
+        ("descriptors, 90 shared", "pose, 90 shared", |cameras| 90 / cameras),
+    ];
+    for (describing, estimating, centres) in of_cameras {
+        let learn = |&count: &usize| Learnt::from(described, &views[..count], centres(count));
+        let learnt = counts.iter().map(learn).collect::<Result<Vec<_>>>()?;
+        growths.push(Growth::over(describing, &counts, |count| describe(&learnt[count - 1]))?);
+        let pose = |count: usize| estimate(&learnt[count - 1].model, &learnt[count - 1].x);
+        growths.push(Growth::over(estimating, &counts, pose)?);
+    }
+    Ok(Group { with: "cameras", growths })
 }
 
 fn contour_points(described: &Described, outline: &Outline) -> Result<Group> {

@@ -9,10 +9,13 @@ use phalanx_hand::Dof;
 use phalanx_render::{Appearance, Renderer};
 use phalanx_rvm::{Model, Scratch};
 use phalanx_segmentation::{Silhouette, SkinModel};
+use phalanx_shape_context::BINS;
 
-use super::clock::{seconds, seconds_once};
-use crate::described::{Halves, Samples};
+use super::clock::seconds;
+use crate::described::{Described, Halves, Samples, vocabulary};
 use crate::lab::Lab;
+use crate::memory;
+use crate::split::Split;
 use crate::table1::{PaperCounts, TableMethod};
 
 /// The counts that the paper's § 5.4 has times for.
@@ -30,7 +33,7 @@ pub(super) struct Stage {
 
 /// Something that is kept in memory, bytes.
 pub(super) struct Held {
-    pub(super) name: &'static str,
+    pub(super) name: String,
     pub(super) bytes: usize,
 }
 
@@ -40,18 +43,17 @@ pub(super) struct Stages {
     /// Seconds to describe one picture, and to estimate a pose by lin, gauss and both.
     pub(super) describe: f64,
     pub(super) estimate: [f64; 3],
-    pub(super) codebooks: f64,
+    /// Seconds to learn the codebooks, and to fit the regressor that takes longest.
+    pub(super) clustering: f64,
+    pub(super) dearest_fit: f64,
 }
 
 /// Times every stage on three views of the training half of complex.
 pub(super) fn run(lab: &Lab<'_>) -> Result<(Stages, Halves)> {
     let described = lab.complex()?;
-    let mut halves = None;
-    let codebooks = seconds_once(|| {
-        halves = Some(described.halves(&lab.all_views(), 0)?);
-        Ok(())
-    })?;
-    let halves = halves.context("the work was done")?;
+    let views = lab.all_views();
+    let halves = described.halves(&views, 0)?;
+    let clustering = clustering(described, &views)?;
     let (models, fits) = fitted(&halves.train)?;
     let estimate = estimates(&models, &halves.test)?;
     let photographs = photographs(lab)?;
@@ -64,14 +66,24 @@ pub(super) fn run(lab: &Lab<'_>) -> Result<(Stages, Halves)> {
         stage("pose, Gaussian, 38 samples, all 90 features", Some(35.7e-6), estimate[1]),
         stage("pose, Gaussian, 38 samples, 32 features", Some(25.4e-6), estimate[2]),
         stage("a frame of three cameras, the most expensive parameters", Some(0.652), frame),
-        stage("training: codebooks and descriptors", None, codebooks),
+        stage("training: clustering the codebooks", None, clustering),
         stage("training: linear, 32 features", Some(7.0), fits[0]),
         stage("training: Gaussian, 38 samples, all features", Some(328.0), fits[1]),
         stage("training: Gaussian, 38 samples, 32 features", Some(305.0), fits[2]),
     ];
-    let contexts = described.contexts.iter().flatten().map(Vec::len).sum::<usize>();
-    let held = held(contexts, &halves, &models);
-    Ok((Stages { timed, held, describe, estimate, codebooks }, halves))
+    let held = held(described, &halves, &models);
+    let dearest_fit = fits.into_iter().fold(0.0, f64::max);
+    Ok((Stages { timed, held, describe, estimate, clustering, dearest_fit }, halves))
+}
+
+/// Seconds to learn the codebooks of the training half.
+fn clustering(described: &Described, views: &[usize]) -> Result<f64> {
+    let split = Split::even(described.poses.len(), 0);
+    let seen = described.seen(views, &split.train);
+    seconds(|| {
+        black_box(vocabulary(0).fit(&seen, BINS)?);
+        Ok(())
+    })
 }
 
 /// The paper's three models, and the seconds that each took.
@@ -135,7 +147,9 @@ fn describe(photographs: &[RgbImage], halves: &Halves) -> Result<f64> {
 }
 
 /// What is kept, by the sizes of its arrays.
-fn held(contexts: usize, halves: &Halves, models: &[Model]) -> Vec<Held> {
+fn held(described: &Described, halves: &Halves, models: &[Model]) -> Vec<Held> {
+    let contexts = described.contexts.iter().flatten().map(Vec::len).sum::<usize>();
+    let (poses, views) = (described.poses.len(), described.contexts[0].len());
     let reals = |count: usize| count * size_of::<f64>();
     let model = |model: &Model| {
         let parts = model.parts();
@@ -147,9 +161,10 @@ fn held(contexts: usize, halves: &Halves, models: &[Model]) -> Vec<Held> {
     };
     let codebooks: usize = halves.codebooks.codebooks().iter().map(|c| c.centres().len()).sum();
     let x = &halves.train.x;
-    let entry = |name, bytes| Held { name, bytes };
+    let entry = |name: &str, bytes| Held { name: name.to_owned(), bytes };
+    let seen = format!("shape contexts of all {poses} poses in {views} views");
     let mut held = vec![
-        entry("shape contexts of all 1,673 poses in three views", contexts * size_of::<f32>()),
+        entry(&seen, contexts * size_of::<f32>()),
         entry("descriptors of the training half", reals(x.nrows() * x.ncols())),
         entry("I × I kernel matrix of the training half", reals(x.ncols() * x.ncols())),
         entry("codebooks, 3 × 30 centres", codebooks * size_of::<f32>()),
@@ -157,14 +172,6 @@ fn held(contexts: usize, halves: &Halves, models: &[Model]) -> Vec<Held> {
         entry("model: Gaussian, 38 samples, all features", model(&models[1])),
         entry("model: Gaussian, 38 samples, 32 features", model(&models[2])),
     ];
-    held.extend(peak().map(|bytes| entry("the whole process at its peak", bytes)));
+    held.extend(memory::peak().map(|bytes| entry("the whole process at its peak", bytes)));
     held
-}
-
-/// The most memory that this process has held, where the system tells.
-fn peak() -> Option<usize> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kibibytes: usize = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(1024 * kibibytes)
 }

@@ -82,7 +82,7 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
         .iter()
         .map(|(set, beyond)| results(set, beyond, &azimuths, lab.progress))
         .collect::<Result<_>>()?;
-    Ok(report::finding(&results[0], &results[1], unseen.left_out))
+    report::finding(&results[0], &results[1], unseen.left_out)
 }
 
 /// Each camera's angle about the forearm, radians: a hand turned by θ_Z looks to it as one turned
