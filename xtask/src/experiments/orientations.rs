@@ -247,6 +247,10 @@ fn of(accuracies: &[Accuracy], orientation: Orientation) -> Result<&Accuracy> {
     found.context("an orientation was not tried")
 }
 
+/// The rolls at which the claims are judged, degrees.
+const UPRIGHT: RangeInclusive<i32> = 0..=0;
+const TURNED: RangeInclusive<i32> = 20..=30;
+
 /// The paper's five claims, and what was seen.
 struct Judgement {
     claims: [bool; 5],
@@ -259,8 +263,6 @@ fn judge(accuracies: &[Accuracy]) -> Result<Judgement> {
     let of = |orientation| of(accuracies, orientation);
     let [image, hand] = [of(Orientation::ImageAxes)?, of(Orientation::HandAxis)?];
     let [tangent, principal] = [of(Orientation::Tangent)?, of(Orientation::PrincipalAxis)?];
-    const UPRIGHT: RangeInclusive<i32> = 0..=0;
-    const TURNED: RangeInclusive<i32> = 20..=30;
     let turned = |accuracy: &Accuracy| accuracy.at(TURNED);
     let losses = [
         image.above(UPRIGHT, image, TURNED),
@@ -274,7 +276,7 @@ fn judge(accuracies: &[Accuracy]) -> Result<Judgement> {
     let claims = [image_loses, !hand_is_below, !hand_loses, tangent_wins, principal_wins];
     let largest_error = losses.iter().map(|loss| loss.standard_error).fold(0.0, f64::max);
     let said = |accuracy: &Accuracy| {
-        format!("{:.0} % and {:.0} %", 100.0 * accuracy.at(0..=0), 100.0 * turned(accuracy))
+        format!("{:.0} % and {:.0} %", 100.0 * accuracy.at(UPRIGHT), 100.0 * turned(accuracy))
     };
     let sentence = format!(
         "Unturned and turned by 20° to 30°, the image axes name {} rightly, the hand axis {}, the \

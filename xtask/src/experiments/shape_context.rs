@@ -55,10 +55,83 @@ enum Tip {
 }
 
 fn run(lab: &Lab<'_>) -> Result<Finding> {
-    let mut subjects = vec![rendered(lab)?];
-    if let Some(data) = lab.data {
-        subjects.push(real(&data.join("digits/5"))?);
+    let mut notes = vec![format!(
+        "Two contours' points are at the same place when they are within {SAME_PLACE_PX} px."
+    )];
+    let mut comparisons = vec![Comparison::of(rendered(lab)?)?];
+    let mut claims = Vec::new();
+    if let Some(folder) = lab.data.map(|data| data.join("digits/5")) {
+        if folder.is_dir() {
+            match real(&folder).and_then(Comparison::of) {
+                Ok(comparison) => comparisons.push(comparison),
+                Err(error) => {
+                    claims.push(false);
+                    notes
+                        .push(format!("The real photograph has no contour to compare: {error:#}."));
+                }
+            }
+        } else {
+            notes.push("There are no photographs of digits; their part is left out.".to_owned());
+        }
     }
+    claims.extend(comparisons.iter().flat_map(Comparison::claims));
+    let said: Vec<String> = comparisons.iter().map(Comparison::sentence).collect();
+    let figures = comparisons.iter().map(drawn).collect::<Result<Vec<_>>>()?;
+    Ok(Finding {
+        verdict: Verdict::of(&claims),
+        sentence: format!("{}.", capitalised(&said.join("; "))),
+        notes,
+        tables: vec![table(&comparisons)],
+        figures: figures.into_iter().flatten().collect(),
+        json: json!({ "rows": comparisons.iter().map(Comparison::json).collect::<Vec<_>>() }),
+    })
+}
+
+/// A photograph with the contour of its skin's colour and how alike that of the reference is.
+struct Comparison {
+    subject: Subject,
+    seen: Seen,
+    tip: usize,
+    found: Match,
+}
+
+impl Comparison {
+    fn of(subject: Subject) -> Result<Self> {
+        let seen = Seen::of(&subject.mask).with_context(|| subject.words)?;
+        let reference = Seen::of(&subject.reference).context(subject.means)?;
+        let tip = subject.tip.of(&seen)?;
+        let found = seen.compare(&reference, tip);
+        Ok(Self { subject, seen, tip, found })
+    }
+
+    fn claims(&self) -> [bool; 3] {
+        [self.seen.is_normalised(), self.found.tip_is_found, self.found.found > 0.9]
+    }
+
+    fn sentence(&self) -> String {
+        format!(
+            "the {} has {} contour points, its context at the tip differs by χ² = {:.3} from that \
+             of {}, and {:.1} % of its contexts are most like the one at the same place there",
+            self.subject.words,
+            self.seen.points().len(),
+            self.found.chi_squared,
+            self.subject.means,
+            100.0 * self.found.found
+        )
+    }
+
+    fn json(&self) -> serde_json::Value {
+        let Self { subject, seen, tip, found } = self;
+        json!({
+            "photograph": subject.words, "reference": subject.means,
+            "contour_points": seen.points().len(), "mean_distance_px": seen.mean_distance,
+            "tip_chi_squared": found.chi_squared, "tip_is_found": found.tip_is_found,
+            "points_found": found.found, "context": seen.context(*tip),
+        })
+    }
+}
+
+fn table(comparisons: &[Comparison]) -> Table {
     let header =
         ["photograph", "contour points", "μ, px", "χ² at the tip", "tip found again", "all points"];
     let mut table = Table::new(
@@ -67,48 +140,17 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
          points the most similar context is at the same place.",
         header,
     );
-    let (mut figures, mut rows, mut claims, mut said) = (vec![], vec![], vec![], vec![]);
-    for subject in &subjects {
-        let seen = Seen::of(&subject.mask).with_context(|| subject.words)?;
-        let reference = Seen::of(&subject.reference).context(subject.means)?;
-        let tip = subject.tip.of(&seen)?;
-        let match_of = seen.compare(&reference, tip);
-        claims.extend([seen.is_normalised(), match_of.tip_is_found, match_of.found > 0.9]);
+    for Comparison { subject, seen, found, .. } in comparisons {
         table.row([
             subject.words.to_owned(),
             seen.points().len().to_string(),
             format!("{:.1}", seen.mean_distance),
-            format!("{:.3}", match_of.chi_squared),
-            if match_of.tip_is_found { "yes" } else { "no" }.to_owned(),
-            format!("{:.1} %", 100.0 * match_of.found),
+            format!("{:.3}", found.chi_squared),
+            if found.tip_is_found { "yes" } else { "no" }.to_owned(),
+            format!("{:.1} %", 100.0 * found.found),
         ]);
-        rows.push(json!({
-            "photograph": subject.words, "reference": subject.means,
-            "contour_points": seen.points().len(), "mean_distance_px": seen.mean_distance,
-            "tip_chi_squared": match_of.chi_squared, "tip_is_found": match_of.tip_is_found,
-            "points_found": match_of.found, "context": seen.context(tip),
-        }));
-        said.push(format!(
-            "the {} has {} contour points, its context at the tip differs by χ² = {:.3} from that \
-             of {}, and {:.1} % of its contexts are most like the one at the same place there",
-            subject.words,
-            seen.points().len(),
-            match_of.chi_squared,
-            subject.means,
-            100.0 * match_of.found
-        ));
-        figures.extend(drawn(subject, &seen, tip)?);
     }
-    Ok(Finding {
-        verdict: Verdict::of(&claims),
-        sentence: format!("{}.", capitalised(&said.join("; "))),
-        notes: vec![format!(
-            "Two contours' points are at the same place when they are within {SAME_PLACE_PX} px."
-        )],
-        tables: vec![table],
-        figures,
-        json: json!({ "rows": rows }),
-    })
+    table
 }
 
 /// The open hand as the top camera would photograph it, against the exact silhouette.
@@ -220,8 +262,9 @@ impl Tip {
 }
 
 /// The photograph beside its contour with the context's grid, and the context.
-fn drawn(subject: &Subject, seen: &Seen, tip: usize) -> Result<[Figure; 2]> {
-    let contour = contour_panel(seen, tip);
+fn drawn(comparison: &Comparison) -> Result<[Figure; 2]> {
+    let Comparison { subject, seen, tip, .. } = comparison;
+    let contour = contour_panel(seen, *tip);
     let (width, height) = contour.dimensions();
     let photograph =
         imageops::resize(&subject.photograph, width, height, imageops::FilterType::Triangle);
@@ -241,7 +284,7 @@ fn drawn(subject: &Subject, seen: &Seen, tip: usize) -> Result<[Figure; 2]> {
                 subject.words, seen.mean_distance
             ),
             "log-polar plate of five rings and twelve sectors, darker where more contour lies",
-            plate::svg(seen.context(tip)),
+            plate::svg(seen.context(*tip)),
         ),
     ])
 }

@@ -100,6 +100,9 @@ fn codebook(described: &Described, centres: usize) -> Result<Codebook> {
     Ok(Codebook::from_parts((0..centres).flat_map(centre).collect(), BINS, 0.1)?)
 }
 
+/// How many centres each of so many cameras has.
+type Centres = fn(usize) -> usize;
+
 /// What is learnt from some of the cameras at a number of centres for each: the codebooks, and the
 /// regressor of the joined descriptors, with one to estimate from.
 struct Learnt {
@@ -147,7 +150,7 @@ fn cameras(lab: &Lab<'_>) -> Result<Group> {
     };
     let counts: Vec<usize> = (1..=views.len()).collect();
     let mut growths = Vec::new();
-    let of_cameras: [(_, _, fn(usize) -> usize); 2] = [
+    let of_cameras: [(_, _, Centres); 2] = [
         ("descriptors, 30 centres each", "pose, 30 centres each", |_| 30),
         ("descriptors, 90 shared", "pose, 90 shared", |cameras| 90 / cameras),
     ];
