@@ -14,6 +14,8 @@ const SAMPLES: [usize; 5] = [1000, 5000, 10_000, 20_000, 50_000];
 const FIXED: usize = 5000;
 /// The most memory that 50,000 samples may take, MiB.
 const MOST_MIB: f64 = 2048.0;
+/// The time per sample is flat while the largest training's stays within this of 10,000 samples'.
+const FLAT: f64 = 1.25;
 
 /// What one training took.
 struct Cost {
@@ -46,7 +48,21 @@ pub(crate) fn section() -> Result<String> {
         let row = format!("| {samples} | {seconds:.1} s | {each} | {mebibytes:.0} MiB |");
         writeln!(table, "{row} {target} | {verdict} |")?;
     }
+    writeln!(table, "\n{}", flatness(&costs, fixed)?)?;
     Ok(table)
+}
+
+/// Whether a sample of the largest training costs what one of a middling training does.
+fn flatness(costs: &[Cost], fixed: &Cost) -> Result<String> {
+    let each = |samples: usize| {
+        let cost = costs.iter().find(|cost| cost.samples == samples).context("a measured size")?;
+        anyhow::Ok((cost.seconds - fixed.seconds) / (samples - FIXED) as f64)
+    };
+    let ratio = each(50_000)? / each(10_000)?;
+    let verdict = if ratio <= FLAT { "flat" } else { "not flat" };
+    Ok(format!(
+        "A sample of 50,000 takes {ratio:.2} of the time of one of 10,000: {verdict} (at most {FLAT} asked for)."
+    ))
 }
 
 /// `cargo xtask train --data-set random --augment --samples N`.
