@@ -1,0 +1,17 @@
+#![doc = include_str!("../README.md")]
+
+mod error;
+mod evidence;
+mod fit;
+mod hull;
+mod prior;
+mod problem;
+mod proportions;
+mod refinement;
+mod system;
+mod view;
+
+pub use error::{Error, Result};
+pub use evidence::Evidence;
+pub use prior::PosePrior;
+pub use refinement::{Refined, Refinement};

@@ -1,0 +1,132 @@
+//! What is known of a pose before looking at borders.
+
+use faer::{Mat, Side};
+use phalanx_hand::{Digit, Dof, Pose, Unit, abduction_limit};
+
+use crate::{Error, Result};
+
+/// A Gaussian over those numbers of a pose that are not known; the others have the mean's value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PosePrior {
+    mean: Pose,
+    dofs: Vec<Dof>,
+    /// Inverse covariance, column after column.
+    precision: Vec<f64>,
+}
+
+impl PosePrior {
+    /// Independent numbers, known to a standard deviation (radians, millimetres): 0 where a number
+    /// is the mean's, infinity where nothing is known.
+    ///
+    /// # Errors
+    /// A mean that is not finite, a deviation that is negative or not a number.
+    pub fn independent(mean: Pose, deviations: &[f64; Dof::COUNT]) -> Result<Self> {
+        for dof in Dof::ALL {
+            let value = deviations[dof.index()];
+            if value.is_nan() || value < 0.0 {
+                return Err(Error::NotFinite { what: "the deviation of", name: dof.name(), value });
+            }
+        }
+        let dofs: Vec<Dof> =
+            Dof::ALL.into_iter().filter(|dof| deviations[dof.index()] > 0.0).collect();
+        let count = dofs.len();
+        let mut precision = vec![0.0; count * count];
+        for (k, dof) in dofs.iter().enumerate() {
+            precision[k * count + k] = deviations[dof.index()].powi(-2);
+        }
+        Self { mean, dofs, precision }.checked()
+    }
+
+    /// Of some numbers with a covariance, `dofs.len()`², column after column, positive definite.
+    ///
+    /// # Errors
+    /// A mean that is not finite, a covariance of another size or that is not positive definite.
+    pub fn correlated(mean: Pose, dofs: &[Dof], covariance: &[f64]) -> Result<Self> {
+        let count = dofs.len();
+        if covariance.len() != count * count {
+            let reason = format!("is of {} numbers for {count} dofs", covariance.len());
+            return Err(Error::Precision { reason });
+        }
+        let covariance = Mat::from_fn(count, count, |i, j| covariance[j * count + i]);
+        let factor = covariance.llt(Side::Lower).map_err(|_| Error::Precision {
+            reason: "cannot be had: the covariance is not positive definite".to_owned(),
+        })?;
+        let inverse = faer::linalg::solvers::DenseSolveCore::inverse(&factor);
+        let precision =
+            (0..count * count).map(|k| inverse[(k % count, k / count)]).collect();
+        Self { mean, dofs: dofs.to_vec(), precision }.checked()
+    }
+
+    fn checked(self) -> Result<Self> {
+        for dof in Dof::ALL {
+            let value = self.mean[dof];
+            if !value.is_finite() {
+                return Err(Error::NotFinite { what: "the prior's mean of", name: dof.name(), value });
+            }
+        }
+        if self.precision.iter().any(|value| !value.is_finite()) {
+            return Err(Error::Precision { reason: "is not finite".to_owned() });
+        }
+        Ok(self)
+    }
+
+    /// The mean.
+    pub fn mean(&self) -> &Pose {
+        &self.mean
+    }
+
+    /// The numbers that are not known.
+    pub fn dofs(&self) -> &[Dof] {
+        &self.dofs
+    }
+
+    /// The same knowledge about another pose.
+    ///
+    /// # Errors
+    /// A pose that is not finite.
+    pub fn about(&self, mean: Pose) -> Result<Self> {
+        Self { mean, ..self.clone() }.checked()
+    }
+
+    /// Half the squared Mahalanobis distance of a pose, and of how far its joints are beyond their
+    /// ranges. Its gradient and Hessian are added to `gradient` and to the lower triangle of
+    /// `hessian`, column after column.
+    pub(crate) fn add(&self, pose: &Pose, gradient: &mut [f64], hessian: &mut [f64]) -> f64 {
+        let count = self.dofs.len();
+        let offset: Vec<f64> = self.dofs.iter().map(|&dof| pose[dof] - self.mean[dof]).collect();
+        let mut energy = 0.0;
+        for (j, column) in self.precision.chunks_exact(count).enumerate() {
+            let slope: f64 = column.iter().zip(&offset).map(|(p, o)| p * o).sum();
+            energy += 0.5 * slope * offset[j];
+            gradient[j] += slope;
+            for (h, p) in hessian[j * count..(j + 1) * count].iter_mut().zip(column) {
+                *h += p;
+            }
+        }
+        for (j, &dof) in self.dofs.iter().enumerate() {
+            let (excess, deviation) = beyond_range(dof, pose);
+            energy += 0.5 * (excess / deviation).powi(2);
+            gradient[j] += excess / (deviation * deviation);
+            if excess != 0.0 {
+                hessian[j * count + j] += deviation.powi(-2);
+            }
+        }
+        energy
+    }
+}
+
+/// How far a number is beyond its plausible range (0 within it), and how far it may be.
+fn beyond_range(dof: Dof, pose: &Pose) -> (f64, f64) {
+    const SOFT_DEG: f64 = 2.0;
+    const SOFT_MM: f64 = 20.0;
+    let abduction = Digit::FINGERS.iter().find(|finger| finger.dofs()[0] == dof);
+    let (low, high) = abduction.map_or(dof.range(), |finger| {
+        let limit = abduction_limit(pose[finger.dofs()[1]]);
+        (-limit, limit)
+    });
+    let excess = (pose[dof] - high).max(0.0) + (pose[dof] - low).min(0.0);
+    match dof.unit() {
+        Unit::Angle => (excess, SOFT_DEG.to_radians()),
+        Unit::Length => (excess, SOFT_MM),
+    }
+}
