@@ -15,10 +15,8 @@ pub(crate) struct Arguments {
     count: usize,
     #[arg(long, default_value_t = 0.5)]
     noise: f64,
-    #[arg(long, default_value_t = 12)]
-    steps: usize,
-    #[arg(long, value_delimiter = ',', default_value = "8,4,2")]
-    reaches: Vec<f64>,
+    #[arg(long, value_delimiter = ',', default_value = "12/4/8,3/2/8,1/1/8")]
+    levels: Vec<String>,
     #[arg(long, value_delimiter = ',', default_value = "side,top,other_side")]
     views: Vec<String>,
     #[arg(long, default_value_t = 1.0)]
@@ -70,7 +68,7 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
     }
     let prior0 = PosePrior::correlated(Pose::REST, &dofs, &cov)?;
     let refinement =
-        Refinement { reaches: a.reaches.clone(), noise: a.noise, steps: a.steps };
+        Refinement { levels: a.levels.iter().map(|l| { let p: Vec<f64> = l.split('/').map(|x| x.parse().unwrap()).collect(); phalanx_refine::Level { reach: p[0], every: p[1] as usize, steps: p[2] as usize } }).collect(), noise: a.noise };
     let describer = SceneDescriber::new(&rig, OrientationRule::default())?;
     let cams = rig.cameras.iter().map(working_camera).collect::<Result<Vec<_>, _>>()?;
     let step = 2000 / a.count;

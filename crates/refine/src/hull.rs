@@ -1,6 +1,6 @@
 //! How far a camera's ray passes a hull of balls.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use phalanx_hand::Primitive;
 
 /// A solid of the hand in a camera's frame, as rays from the camera's centre see it.
@@ -33,6 +33,46 @@ pub(crate) struct Passing {
     pub(crate) point: Option<DVec3>,
 }
 
+/// A point, line or triangle of the plane z = 1 and how far the outline may be from it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bound {
+    corners: usize,
+    seen: [DVec2; 3],
+    reach: f64,
+    depth: f64,
+}
+
+impl Bound {
+    /// No more than the distance ρ, mm, of the ray through a place of the plane z = 1.
+    pub(crate) fn least(&self, place: DVec2) -> f64 {
+        // A ray off the axis passes nearer than the plane says.
+        const OBLIQUE: f64 = 0.8;
+        let [a, b, c] = self.seen;
+        let apart = match self.corners {
+            0 => return f64::NEG_INFINITY,
+            1 => place.distance_squared(a),
+            2 => squared_distance(place, a, b),
+            _ => {
+                let side = |from: DVec2, to: DVec2| (to - from).perp_dot(place - from) > 0.0;
+                let sides = [side(a, b), side(b, c), side(c, a)];
+                if sides[0] == sides[1] && sides[1] == sides[2] {
+                    return f64::NEG_INFINITY;
+                }
+                let edges = [(a, b), (b, c), (c, a)].map(|(a, b)| squared_distance(place, a, b));
+                edges[0].min(edges[1]).min(edges[2])
+            }
+        };
+        OBLIQUE * (apart.sqrt() - self.reach) * self.depth
+    }
+}
+
+/// The squared distance of a point from a line between two others.
+fn squared_distance(point: DVec2, from: DVec2, to: DVec2) -> f64 {
+    let (line, offset) = (to - from, point - from);
+    let along = (offset.dot(line) / line.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    offset.distance_squared(line * along)
+}
+
 impl Hull {
     /// Of a solid in the camera's frame.
     pub(crate) fn new(solid: &Primitive) -> Self {
@@ -49,18 +89,19 @@ impl Hull {
         }
     }
 
-    /// A disc of the plane z = 1 that holds the outline: middle and radius.
-    pub(crate) fn bound(&self) -> (DVec3, f64) {
-        // Undoing the squash moves outlines; such a solid, the forearm, is looked at always.
-        if self.unsquash.is_some() {
-            return (DVec3::Z, f64::INFINITY);
-        }
-        let seen = self.centers.map(|center| center / center.z);
-        let middle = (seen[0] + seen[1] + seen[2]) / 3.0;
+    /// Its outline's whereabouts in the plane z = 1.
+    pub(crate) fn bound(&self) -> Bound {
         // A ball off the axis is seen wider by less than this.
         const OBLIQUE: f64 = 1.1;
-        let reach = |k: usize| seen[k].distance(middle) + OBLIQUE * self.radii[k] / self.centers[k].z;
-        (middle, reach(0).max(reach(1)).max(reach(2)))
+        let seen = self.centers.map(|center| center.truncate() / center.z);
+        let reach = [0, 1, 2].map(|k| OBLIQUE * self.radii[k] / self.centers[k].z);
+        Bound {
+            // Undoing the squash moves outlines: such a solid, the forearm, may be anywhere.
+            corners: if self.unsquash.is_some() { 0 } else { self.balls },
+            seen,
+            reach: reach[0].max(reach[1]).max(reach[2]),
+            depth: self.centers[0].z.min(self.centers[1].z).min(self.centers[2].z),
+        }
     }
 
     /// Where the ray of unit direction `ray` from the camera's centre passes.

@@ -8,10 +8,11 @@ mod prior;
 mod problem;
 mod proportions;
 mod refinement;
+mod search;
 mod system;
 mod view;
 
 pub use error::{Error, Result};
 pub use evidence::Evidence;
 pub use prior::PosePrior;
-pub use refinement::{Refined, Refinement};
+pub use refinement::{Level, Refined, Refinement};

@@ -10,7 +10,9 @@ use crate::{Error, Result};
 pub struct PosePrior {
     mean: Pose,
     dofs: Vec<Dof>,
-    /// Inverse covariance, column after column.
+    /// Column after column.
+    covariance: Vec<f64>,
+    /// Its inverse.
     precision: Vec<f64>,
 }
 
@@ -30,11 +32,13 @@ impl PosePrior {
         let dofs: Vec<Dof> =
             Dof::ALL.into_iter().filter(|dof| deviations[dof.index()] > 0.0).collect();
         let count = dofs.len();
-        let mut precision = vec![0.0; count * count];
+        let mut covariance = vec![0.0; count * count];
+        let mut precision = covariance.clone();
         for (k, dof) in dofs.iter().enumerate() {
+            covariance[k * count + k] = deviations[dof.index()].powi(2);
             precision[k * count + k] = deviations[dof.index()].powi(-2);
         }
-        Self { mean, dofs, precision }.checked()
+        Self { mean, dofs, covariance, precision }.checked()
     }
 
     /// Of some numbers with a covariance, `dofs.len()`², column after column, positive definite.
@@ -47,14 +51,14 @@ impl PosePrior {
             let reason = format!("is of {} numbers for {count} dofs", covariance.len());
             return Err(Error::Precision { reason });
         }
-        let covariance = Mat::from_fn(count, count, |i, j| covariance[j * count + i]);
-        let factor = covariance.llt(Side::Lower).map_err(|_| Error::Precision {
+        let square = Mat::from_fn(count, count, |i, j| covariance[j * count + i]);
+        let factor = square.llt(Side::Lower).map_err(|_| Error::Precision {
             reason: "cannot be had: the covariance is not positive definite".to_owned(),
         })?;
         let inverse = faer::linalg::solvers::DenseSolveCore::inverse(&factor);
         let precision =
             (0..count * count).map(|k| inverse[(k % count, k / count)]).collect();
-        Self { mean, dofs: dofs.to_vec(), precision }.checked()
+        Self { mean, dofs: dofs.to_vec(), covariance: covariance.to_vec(), precision }.checked()
     }
 
     fn checked(self) -> Result<Self> {
@@ -86,6 +90,37 @@ impl PosePrior {
     /// A pose that is not finite.
     pub fn about(&self, mean: Pose) -> Result<Self> {
         Self { mean, ..self.clone() }.checked()
+    }
+
+    /// The covariance of some numbers, column after column; `None` unless all are open.
+    pub(crate) fn covariance_of(&self, dofs: &[Dof]) -> Option<Vec<f64>> {
+        let slots: Vec<usize> = dofs
+            .iter()
+            .map(|dof| self.dofs.iter().position(|own| own == dof))
+            .collect::<Option<_>>()?;
+        let count = self.dofs.len();
+        Some(
+            slots
+                .iter()
+                .flat_map(|&j| slots.iter().map(move |&i| (i, j)))
+                .map(|(i, j)| self.covariance[j * count + i])
+                .collect(),
+        )
+    }
+
+    /// The energy of a pose; see [`add`](Self::add).
+    pub(crate) fn energy(&self, pose: &Pose) -> f64 {
+        let count = self.dofs.len();
+        let offset: Vec<f64> = self.dofs.iter().map(|&dof| pose[dof] - self.mean[dof]).collect();
+        let columns = self.precision.chunks_exact(count).zip(&offset);
+        let gaussian: f64 = columns
+            .map(|(column, o)| o * column.iter().zip(&offset).map(|(p, o)| p * o).sum::<f64>())
+            .sum();
+        let beyond = self.dofs.iter().map(|&dof| {
+            let (excess, deviation) = beyond_range(dof, pose);
+            (excess / deviation).powi(2)
+        });
+        0.5 * (gaussian + beyond.sum::<f64>())
     }
 
     /// Half the squared Mahalanobis distance of a pose, and of how far its joints are beyond their

@@ -38,18 +38,20 @@ pub(crate) struct Measure {
     pub(crate) reach: f64,
     /// Standard deviation of a border's place, px.
     pub(crate) noise: f64,
+    /// Of so many cracks one is looked at.
+    pub(crate) every: usize,
 }
 
 impl Measure {
     fn energy(&self, residual: f64) -> f64 {
         let (s, r) = (self.reach * self.reach, residual * residual);
-        0.5 * s * r / (s + r) / (self.noise * self.noise)
+        0.5 * s * r / (s + r) * self.every as f64 / (self.noise * self.noise)
     }
 
     fn weight(&self, residual: f64) -> f64 {
         let s = self.reach * self.reach;
         let w = s / (s + residual * residual);
-        w * w / (self.noise * self.noise)
+        w * w * self.every as f64 / (self.noise * self.noise)
     }
 }
 
@@ -131,7 +133,7 @@ impl Problem<'_> {
             } else {
                 &posed.primitives
             };
-            view.compare(solids, evidence)?;
+            view.compare(solids, evidence, measure.every)?;
             let extrinsics = &evidence.camera().extrinsics;
             let back = correction.matrix3.transpose() * extrinsics.rotation.transpose();
             let scale = pixels_per_mm(evidence, self.rest.translation);

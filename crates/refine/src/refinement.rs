@@ -6,6 +6,7 @@ use phalanx_hand::{HandShape, Pose};
 use crate::fit::{State, Stop, descend};
 use crate::problem::{Frame, Freedom, Measure, Problem, Shared};
 use crate::proportions::Proportions;
+use crate::search::try_postures;
 use crate::system::covariance;
 use crate::view::View;
 use crate::{Error, Evidence, PosePrior, Result};
@@ -13,17 +14,27 @@ use crate::{Error, Evidence, PosePrior, Result};
 /// How poses are refined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refinement {
-    /// From coarse to fine, how far borders may be apart and still count, px.
-    pub reaches: Vec<f64>,
+    /// From coarse to fine.
+    pub levels: Vec<Level>,
     /// Standard deviation of a border's place, px.
     pub noise: f64,
-    /// Steps at most at each reach.
+}
+
+/// A level of detail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Level {
+    /// How far borders may be apart and still count, px.
+    pub reach: f64,
+    /// Of so many places along the border one is looked at.
+    pub every: usize,
+    /// Steps at most.
     pub steps: usize,
 }
 
 impl Default for Refinement {
     fn default() -> Self {
-        Self { reaches: vec![8.0, 4.0, 2.0], noise: 0.5, steps: 12 }
+        let level = |reach, every, steps| Level { reach, every, steps };
+        Self { levels: vec![level(12.0, 4, 8), level(3.0, 2, 8), level(1.0, 1, 8)], noise: 0.5 }
     }
 }
 
@@ -81,14 +92,18 @@ impl Refinement {
             corrections: vec![[DVec3::ZERO; 2]; evidence.len()],
         };
         let start = State { poses: vec![*start], shared };
-        let finest = self.measure(*self.reaches.last().expect("checked"));
+        let finest = self.measure(self.levels.last().expect("checked"));
         let mut state = start.clone();
         let mut steps = 0;
-        for &reach in &self.reaches {
-            let stop = Stop { steps: self.steps, gain: 1e-3 };
-            let outcome = descend(&problem, state, self.measure(reach), stop, &mut views)?;
+        for (k, level) in self.levels.iter().enumerate() {
+            let stop = Stop { steps: level.steps, gain: 1e-3 };
+            let outcome = descend(&problem, state, self.measure(level), stop, &mut views)?;
             state = outcome.state;
             steps += outcome.steps;
+            if k == 0 && std::env::var("SEARCH").is_ok() {
+                let pose = &mut state.poses[0];
+                *pose = try_postures(hand, rest, evidence, prior, pose, &mut views[0])?;
+            }
         }
         // What was coarse may have led away from a good start.
         let stay = Stop { steps: 0, gain: 0.0 };
@@ -107,8 +122,8 @@ impl Refinement {
         })
     }
 
-    fn measure(&self, reach: f64) -> Measure {
-        Measure { reach, noise: self.noise }
+    fn measure(&self, level: &Level) -> Measure {
+        Measure { reach: level.reach, noise: self.noise, every: level.every }
     }
 
     fn check(&self) -> Result<()> {
@@ -116,10 +131,20 @@ impl Refinement {
         if !(self.noise > 0.0 && self.noise.is_finite()) {
             return wrong("noise", self.noise, "positive");
         }
-        match self.reaches.iter().find(|reach| !(**reach > 0.0 && reach.is_finite())) {
-            Some(&reach) => wrong("reach", reach, "positive"),
-            None if self.reaches.is_empty() => wrong("number of reaches", 0.0, "at least 1"),
-            None => Ok(()),
+        for level in &self.levels {
+            if !(level.reach > 0.0 && level.reach.is_finite()) {
+                return wrong("reach", level.reach, "positive");
+            }
+            if level.every == 0 {
+                return wrong("every", 0.0, "at least 1");
+            }
+        }
+        match self.levels.last() {
+            None => wrong("number of levels", 0.0, "at least 1"),
+            Some(level) if level.every != 1 => {
+                wrong("every of the last level", level.every as f64, "1")
+            }
+            Some(_) => Ok(()),
         }
     }
 }

@@ -6,7 +6,7 @@ use phalanx_hand::Primitive;
 use phalanx_render::Renderer;
 
 use crate::evidence::find_cracks;
-use crate::hull::{Hull, Passing};
+use crate::hull::{Bound, Hull, Passing};
 use crate::{Error, Evidence, Result};
 
 /// A ray of the observed border and the solid that should touch it.
@@ -18,13 +18,11 @@ pub(crate) struct Match {
     pub(crate) passing: Passing,
 }
 
-/// A hull, with a disc of the plane z = 1 that holds its outline and its least depth.
+/// A hull, and where its outline may be.
 #[derive(Debug, Clone)]
 struct Seen {
     hull: Hull,
-    middle: DVec2,
-    reach: f64,
-    depth: f64,
+    bound: Bound,
 }
 
 /// The memory in which one camera's view of one pose after another is compared with what it saw.
@@ -53,7 +51,7 @@ impl View {
     /// Matches solids, in the world, with the border that was seen, both ways: each observed crack
     /// with the solid that it is least outside of, and each crack of the drawn silhouette's solid
     /// with the observed crack that is nearest to it.
-    pub(crate) fn compare(&mut self, solids: &[Primitive], evidence: &Evidence) -> Result<()> {
+    pub(crate) fn compare(&mut self, solids: &[Primitive], evidence: &Evidence, every: usize) -> Result<()> {
         let camera = evidence.camera();
         self.renderer
             .silhouette_into(solids, &mut self.drawn)
@@ -67,12 +65,12 @@ impl View {
         self.seen.extend(solids.iter().map(|solid| Seen::new(&solid.moved(&to_camera))));
         self.matches.clear();
         let mut last = 0;
-        for (&ray, &normal) in evidence.rays().iter().zip(evidence.normals()) {
+        for (&ray, &normal) in evidence.rays().iter().zip(evidence.normals()).step_by(every) {
             let found = closest(&self.seen, ray, Some(normal), last);
             last = found.solid;
             self.matches.push(found);
         }
-        for &crack in &self.cracks {
+        for &crack in self.cracks.iter().step_by(every) {
             let Some(direction) = camera.intrinsics.to_normalised(crack) else { continue };
             let own = closest(&self.seen, direction.extend(1.0).normalize(), None, last);
             last = own.solid;
@@ -86,6 +84,18 @@ impl View {
         Ok(())
     }
 
+    /// Draws solids, in the world, into an image.
+    pub(crate) fn draw(
+        &mut self,
+        solids: &[Primitive],
+        evidence: &Evidence,
+        image: &mut GrayImage,
+    ) -> Result<()> {
+        self.renderer
+            .silhouette_into(solids, image)
+            .map_err(|reason| render_error(evidence, reason))
+    }
+
     /// The silhouette that was drawn last.
     pub(crate) fn drawn(&self) -> &GrayImage {
         &self.drawn
@@ -95,18 +105,7 @@ impl View {
 impl Seen {
     fn new(solid_in_camera: &Primitive) -> Self {
         let hull = Hull::new(solid_in_camera);
-        let (middle, reach) = hull.bound();
-        let depths = solid_in_camera.balls().iter().map(|ball| ball.center.z);
-        let depth = depths.fold(f64::INFINITY, f64::min);
-        Self { hull, middle: middle.truncate(), reach, depth }
-    }
-
-    /// Less than the distance of a ray from the hull, mm, by the place where the ray meets the
-    /// plane z = 1.
-    fn least(&self, place: DVec2) -> f64 {
-        // A ray off the axis passes nearer than the plane says.
-        const OBLIQUE: f64 = 0.8;
-        OBLIQUE * (place.distance(self.middle) - self.reach) * self.depth
+        Self { hull, bound: hull.bound() }
     }
 }
 
@@ -123,7 +122,7 @@ fn closest(seen: &[Seen], ray: DVec3, outwards: Option<DVec2>, hint: usize) -> M
     let mut best = Match { solid: hint, passing: seen[hint].hull.pass(ray) };
     let mut best_cost = cost(&best.passing);
     for (solid, candidate) in seen.iter().enumerate() {
-        if solid != hint && candidate.least(place) < best_cost {
+        if solid != hint && candidate.bound.least(place) < best_cost {
             let passing = candidate.hull.pass(ray);
             let c = cost(&passing);
             if c < best_cost {
