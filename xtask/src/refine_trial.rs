@@ -23,6 +23,12 @@ pub(crate) struct Arguments {
     start: f64,
     #[arg(long)]
     own: bool,
+    #[arg(long, default_value_t = 0.5)]
+    margin: f64,
+    #[arg(long, value_delimiter = ',')]
+    hand: Vec<f64>,
+    #[arg(long, value_delimiter = ',')]
+    cameras: Vec<f64>,
 }
 
 fn gauss(r: &mut ItemRandom) -> f64 {
@@ -68,7 +74,7 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
     }
     let prior0 = PosePrior::correlated(Pose::REST, &dofs, &cov)?;
     let refinement =
-        Refinement { levels: a.levels.iter().map(|l| { let p: Vec<f64> = l.split('/').map(|x| x.parse().unwrap()).collect(); phalanx_refine::Level { reach: p[0], every: p[1] as usize, steps: p[2] as usize } }).collect(), noise: a.noise };
+        Refinement { levels: a.levels.iter().map(|l| { let p: Vec<f64> = l.split('/').map(|x| x.parse().unwrap()).collect(); phalanx_refine::Level { reach: p[0], every: p[1] as usize, steps: p[2] as usize } }).collect(), noise: a.noise, margin: a.margin, hand: (a.hand.len() == 2).then(|| [a.hand[0], a.hand[1]]), cameras: (a.cameras.len() == 2).then(|| [a.cameras[0].to_radians(), a.cameras[1]]) };
     let describer = SceneDescriber::new(&rig, OrientationRule::default())?;
     let cams = rig.cameras.iter().map(working_camera).collect::<Result<Vec<_>, _>>()?;
     let step = 2000 / a.count;

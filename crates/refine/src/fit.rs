@@ -1,16 +1,14 @@
 //! Damped least squares (Levenberg 1944, Marquardt 1963), coarse to fine.
 
-use phalanx_hand::Pose;
-
 use crate::Result;
-use crate::problem::{Measure, Problem, Shared};
+use crate::problem::{Measure, Moment, Problem, Shared};
 use crate::system::{self, FrameSystem, Step};
 use crate::view::View;
 
 /// Where a fit is.
 #[derive(Debug, Clone)]
 pub(crate) struct State {
-    pub(crate) poses: Vec<Pose>,
+    pub(crate) moments: Vec<Moment>,
     pub(crate) shared: Shared,
 }
 
@@ -78,9 +76,9 @@ fn look_at(
     views: &mut [Vec<View>],
 ) -> Result<Look> {
     let (mut energy, shared_prior) = problem.shared_prior(&state.shared);
-    let mut frames = Vec::with_capacity(state.poses.len());
-    for (frame, (pose, views)) in state.poses.iter().zip(views).enumerate() {
-        let (own, system) = problem.look(frame, pose, &state.shared, measure, views)?;
+    let mut frames = Vec::with_capacity(state.moments.len());
+    for (frame, (moment, views)) in state.moments.iter().zip(views).enumerate() {
+        let (own, system) = problem.look(frame, moment, &state.shared, measure, views)?;
         energy += own;
         frames.push(system);
     }
@@ -89,9 +87,13 @@ fn look_at(
 
 fn moved(problem: &Problem<'_>, state: &State, step: &Step) -> State {
     let mut state = state.clone();
-    for ((pose, frame), step) in state.poses.iter_mut().zip(&problem.frames).zip(&step.poses) {
-        for (&dof, step) in frame.prior.dofs().iter().zip(step) {
-            pose[dof] += step;
+    for ((moment, frame), step) in state.moments.iter_mut().zip(&problem.frames).zip(&step.poses) {
+        let (pose, margins) = step.split_at(frame.prior.dofs().len());
+        for (&dof, step) in frame.prior.dofs().iter().zip(pose) {
+            moment.pose[dof] += step;
+        }
+        for (margin, step) in moment.margins.iter_mut().zip(margins) {
+            *margin += step;
         }
     }
     let mut rest = step.shared.iter();

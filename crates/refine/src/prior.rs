@@ -124,9 +124,15 @@ impl PosePrior {
     }
 
     /// Half the squared Mahalanobis distance of a pose, and of how far its joints are beyond their
-    /// ranges. Its gradient and Hessian are added to `gradient` and to the lower triangle of
-    /// `hessian`, column after column.
-    pub(crate) fn add(&self, pose: &Pose, gradient: &mut [f64], hessian: &mut [f64]) -> f64 {
+    /// ranges. Its gradient and Hessian are added to the beginnings of `gradient` and of the columns
+    /// of `hessian`, `rows` long.
+    pub(crate) fn add(
+        &self,
+        pose: &Pose,
+        gradient: &mut [f64],
+        hessian: &mut [f64],
+        rows: usize,
+    ) -> f64 {
         let count = self.dofs.len();
         let offset: Vec<f64> = self.dofs.iter().map(|&dof| pose[dof] - self.mean[dof]).collect();
         let mut energy = 0.0;
@@ -134,7 +140,7 @@ impl PosePrior {
             let slope: f64 = column.iter().zip(&offset).map(|(p, o)| p * o).sum();
             energy += 0.5 * slope * offset[j];
             gradient[j] += slope;
-            for (h, p) in hessian[j * count..(j + 1) * count].iter_mut().zip(column) {
+            for (h, p) in hessian[j * rows..].iter_mut().zip(column) {
                 *h += p;
             }
         }
@@ -143,7 +149,7 @@ impl PosePrior {
             energy += 0.5 * (excess / deviation).powi(2);
             gradient[j] += excess / (deviation * deviation);
             if excess != 0.0 {
-                hessian[j * count + j] += deviation.powi(-2);
+                hessian[j * rows + j] += deviation.powi(-2);
             }
         }
         energy

@@ -23,6 +23,15 @@ pub(crate) struct Freedom {
     pub(crate) cameras: Option<[f64; 2]>,
 }
 
+/// The unknowns of one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Moment {
+    pub(crate) pose: Pose,
+    /// How far each view's border lies outside the hand's, px: what segmentation adds all around or
+    /// takes away.
+    pub(crate) margins: Vec<f64>,
+}
+
 /// What all frames share.
 #[derive(Debug, Clone)]
 pub(crate) struct Shared {
@@ -38,6 +47,8 @@ pub(crate) struct Measure {
     pub(crate) reach: f64,
     /// Standard deviation of a border's place, px.
     pub(crate) noise: f64,
+    /// Standard deviation of what segmentation adds to or takes from a whole border, px.
+    pub(crate) margin: f64,
     /// Of so many cracks one is looked at.
     pub(crate) every: usize,
 }
@@ -109,12 +120,13 @@ impl Problem<'_> {
     pub(crate) fn look(
         &self,
         frame: usize,
-        pose: &Pose,
+        moment: &Moment,
         shared: &Shared,
         measure: Measure,
         views: &mut [View],
     ) -> Result<(f64, FrameSystem)> {
         let Frame { evidence, prior } = &self.frames[frame];
+        let Moment { pose, margins } = moment;
         let hand = shared.proportions.hand(self.given);
         let posed = hand.pose(pose, self.rest);
         let motions = hand.motions(pose, self.rest);
@@ -122,7 +134,7 @@ impl Problem<'_> {
             .freedom
             .hand
             .map(|_| shared.proportions.slopes(self.given, pose, self.rest, &posed));
-        let mut system = FrameSystem::new(prior.dofs().len(), self.shared_count(shared));
+        let mut system = FrameSystem::new(prior.dofs().len(), margins.len(), self.shared_count(shared));
         let mut energy = 0.0;
         for (v, (view, evidence)) in views.iter_mut().zip(*evidence).enumerate() {
             let correction = correction(shared.corrections[v], self.rest.translation);
@@ -139,10 +151,11 @@ impl Problem<'_> {
             let scale = pixels_per_mm(evidence, self.rest.translation);
             let mut rows = Rows { dofs: slots(prior.dofs()), pose: Row::new(), shared: Row::new() };
             for found in &view.matches {
-                let residual = scale * found.passing.distance;
+                let residual = scale * found.passing.distance - margins[v];
                 energy += measure.energy(residual);
                 let contact = contact(found, &posed, evidence, back, scale, &correction);
                 rows.of_pose(&contact, &motions);
+                rows.pose.push((prior.dofs().len() + v, -1.0));
                 rows.shared.clear();
                 if let Some(slopes) = &slopes {
                     rows.of_proportions(&contact, &slopes[found.solid], scale);
@@ -155,7 +168,7 @@ impl Problem<'_> {
                 system.add(residual, weight, &rows.pose, &rows.shared);
             }
         }
-        energy += prior.add(pose, &mut system.pose_gradient, &mut system.pose_hessian);
+        energy += system.add_prior(prior, moment, measure.margin);
         Ok((energy, system))
     }
 }

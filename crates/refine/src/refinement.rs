@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec3};
 use phalanx_hand::{HandShape, Pose};
 
 use crate::fit::{State, Stop, descend};
-use crate::problem::{Frame, Freedom, Measure, Problem, Shared};
+use crate::problem::{Frame, Freedom, Measure, Moment, Problem, Shared};
 use crate::proportions::Proportions;
 use crate::search::try_postures;
 use crate::system::covariance;
@@ -18,6 +18,13 @@ pub struct Refinement {
     pub levels: Vec<Level>,
     /// Standard deviation of a border's place, px.
     pub noise: f64,
+    /// Standard deviation of what segmentation adds to or takes from a whole border, px.
+    pub margin: f64,
+    /// How uncertain the hand is: standard deviations of the logarithms of its size and of each bone
+    /// and radius.
+    pub hand: Option<[f64; 2]>,
+    /// How uncertain the cameras are: turn, radians, and shift, mm.
+    pub cameras: Option<[f64; 2]>,
 }
 
 /// A level of detail.
@@ -34,7 +41,7 @@ pub struct Level {
 impl Default for Refinement {
     fn default() -> Self {
         let level = |reach, every, steps| Level { reach, every, steps };
-        Self { levels: vec![level(12.0, 4, 8), level(3.0, 2, 8), level(1.0, 1, 8)], noise: 0.5 }
+        Self { levels: vec![level(12.0, 4, 8), level(3.0, 2, 8), level(1.0, 1, 8)], noise: 0.5, margin: 0.5, hand: None, cameras: None }
     }
 }
 
@@ -85,13 +92,13 @@ impl Refinement {
             given: hand,
             rest,
             frames: vec![Frame { evidence, prior }],
-            freedom: Freedom::default(),
+            freedom: Freedom { hand: self.hand, cameras: self.cameras },
         };
         let shared = Shared {
             proportions: Proportions::of(hand),
             corrections: vec![[DVec3::ZERO; 2]; evidence.len()],
         };
-        let start = State { poses: vec![*start], shared };
+        let start = State { moments: vec![Moment { pose: *start, margins: vec![0.0; evidence.len()] }], shared };
         let finest = self.measure(self.levels.last().expect("checked"));
         let mut state = start.clone();
         let mut steps = 0;
@@ -101,7 +108,7 @@ impl Refinement {
             state = outcome.state;
             steps += outcome.steps;
             if k == 0 && std::env::var("SEARCH").is_ok() {
-                let pose = &mut state.poses[0];
+                let pose = &mut state.moments[0].pose;
                 *pose = try_postures(hand, rest, evidence, prior, pose, &mut views[0])?;
             }
         }
@@ -113,8 +120,8 @@ impl Refinement {
         let best = descend(&problem, best.state, finest, Stop { steps: 1, gain: 1e-3 }, &mut views)?;
         let overlaps = views[0].iter().zip(evidence).map(|(view, seen)| seen.overlap(view.drawn()));
         Ok(Refined {
-            pose: best.state.poses[0],
-            covariance: covariance(&best.frames[0]).unwrap_or_default(),
+            pose: best.state.moments[0].pose,
+            covariance: covariance(&best.frames[0], prior.dofs().len()).unwrap_or_default(),
             overlaps: overlaps.collect(),
             energy: best.energy,
             converged: best.converged,
@@ -123,7 +130,7 @@ impl Refinement {
     }
 
     fn measure(&self, level: &Level) -> Measure {
-        Measure { reach: level.reach, noise: self.noise, every: level.every }
+        Measure { reach: level.reach, noise: self.noise, margin: self.margin, every: level.every }
     }
 
     fn check(&self) -> Result<()> {

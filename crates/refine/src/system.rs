@@ -3,6 +3,9 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef, Side};
 
+use crate::PosePrior;
+use crate::problem::Moment;
+
 /// A sparse row of the Jacobian: which unknown, and the slope.
 pub(crate) type Row = Vec<(usize, f64)>;
 
@@ -21,7 +24,9 @@ pub(crate) struct FrameSystem {
 }
 
 impl FrameSystem {
-    pub(crate) fn new(poses: usize, shared: usize) -> Self {
+    /// Of so many numbers of a pose, margins, and shared numbers.
+    pub(crate) fn new(numbers: usize, margins: usize, shared: usize) -> Self {
+        let poses = numbers + margins;
         Self {
             poses,
             shared,
@@ -31,6 +36,21 @@ impl FrameSystem {
             pose_gradient: vec![0.0; poses],
             shared_gradient: vec![0.0; shared],
         }
+    }
+
+    /// Adds what is known of a pose and of its margins; the energy of that.
+    pub(crate) fn add_prior(&mut self, prior: &PosePrior, moment: &Moment, deviation: f64) -> f64 {
+        let numbers = prior.dofs().len();
+        let precision = deviation.powi(-2);
+        let mut energy = 0.0;
+        for (v, margin) in moment.margins.iter().enumerate() {
+            let k = numbers + v;
+            energy += 0.5 * margin * margin * precision;
+            self.pose_gradient[k] += margin * precision;
+            self.pose_hessian[k * self.poses + k] += precision;
+        }
+        let (gradient, hessian) = (&mut self.pose_gradient, &mut self.pose_hessian);
+        energy + prior.add(&moment.pose, gradient, hessian, self.poses)
     }
 
     /// Adds a weighted residual. Both rows are in ascending order.
@@ -127,12 +147,12 @@ pub(crate) fn solve(
     })
 }
 
-/// The inverse of a frame's Hessian, with everything shared being known: the covariance of its pose,
-/// column after column.
-pub(crate) fn covariance(frame: &FrameSystem) -> Option<Vec<f64>> {
+/// The covariance of the first `numbers` unknowns of a frame, with everything shared being known,
+/// column after column: of the inverse of its Hessian.
+pub(crate) fn covariance(frame: &FrameSystem, numbers: usize) -> Option<Vec<f64>> {
     let n = frame.poses;
     let own = Mat::from_fn(n, n, |i, j| frame.pose_hessian[i.min(j) * n + i.max(j)]);
     let factor = own.llt(Side::Lower).ok()?;
     let inverse = faer::linalg::solvers::DenseSolveCore::inverse(&factor);
-    Some((0..n * n).map(|k| inverse[(k % n, k / n)]).collect())
+    Some((0..numbers * numbers).map(|k| inverse[(k % numbers, k / numbers)]).collect())
 }
