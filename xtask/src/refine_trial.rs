@@ -15,7 +15,7 @@ pub(crate) struct Arguments {
     count: usize,
     #[arg(long, default_value_t = 0.5)]
     noise: f64,
-    #[arg(long, value_delimiter = ',', default_value = "12/4/8,3/2/8,1/1/8")]
+    #[arg(long, value_delimiter = ',', default_value = "12/4/6,3/2/6,1/1/6")]
     levels: Vec<String>,
     #[arg(long, value_delimiter = ',', default_value = "side,top,other_side")]
     views: Vec<String>,
@@ -23,12 +23,10 @@ pub(crate) struct Arguments {
     start: f64,
     #[arg(long)]
     own: bool,
-    #[arg(long, default_value_t = 0.5)]
+    #[arg(long, default_value_t = 1.0)]
     margin: f64,
-    #[arg(long, value_delimiter = ',')]
-    hand: Vec<f64>,
-    #[arg(long, value_delimiter = ',')]
-    cameras: Vec<f64>,
+    #[arg(long)]
+    beyond: Option<f64>,
 }
 
 fn gauss(r: &mut ItemRandom) -> f64 {
@@ -74,7 +72,7 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
     }
     let prior0 = PosePrior::correlated(Pose::REST, &dofs, &cov)?;
     let refinement =
-        Refinement { levels: a.levels.iter().map(|l| { let p: Vec<f64> = l.split('/').map(|x| x.parse().unwrap()).collect(); phalanx_refine::Level { reach: p[0], every: p[1] as usize, steps: p[2] as usize } }).collect(), noise: a.noise, margin: a.margin, hand: (a.hand.len() == 2).then(|| [a.hand[0], a.hand[1]]), cameras: (a.cameras.len() == 2).then(|| [a.cameras[0].to_radians(), a.cameras[1]]) };
+        Refinement { levels: a.levels.iter().map(|l| { let p: Vec<f64> = l.split('/').map(|x| x.parse().unwrap()).collect(); phalanx_refine::Level { reach: p[0], every: p[1] as usize, steps: p[2] as usize } }).collect(), noise: a.noise, margin: a.margin, doubt: a.beyond.map(|beyond| phalanx_refine::Doubt { beyond, ..Default::default() }) };
     let describer = SceneDescriber::new(&rig, OrientationRule::default())?;
     let cams = rig.cameras.iter().map(working_camera).collect::<Result<Vec<_>, _>>()?;
     let step = 2000 / a.count;
@@ -136,6 +134,7 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
     ms.sort_by(f64::total_cmp);
     let ov: f64 = out.iter().map(|o| o.2.overlaps.iter().sum::<f64>() / o.2.overlaps.len() as f64).sum::<f64>() / out.len() as f64;
     let st: f64 = out.iter().map(|o| o.2.steps as f64).sum::<f64>() / out.len() as f64;
+    let mut px: Vec<f64> = out.iter().map(|o| o.2.border_px).collect(); px.sort_by(f64::total_cmp); println!("border px quantiles {:.2} {:.2} {:.2} doubted {}", px[px.len()/20], px[px.len()/2], px[px.len()*19/20], out.iter().filter(|o| o.2.doubted).count());
     println!("ms median {:.1} p95 {:.1}; evidence {:.2}; overlap {:.3}; steps {:.1}", ms[ms.len() / 2], ms[ms.len() * 95 / 100], out[0].4, ov, st);
     let mut order: Vec<usize> = (0..out.len()).collect();
     let e = |i: usize| dofs.iter().map(|&d| (out[i].2.pose[d] - out[i].0[d]).abs()).sum::<f64>();

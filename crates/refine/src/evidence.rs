@@ -17,6 +17,8 @@ pub struct Evidence {
     mask: GrayImage,
     /// Unit directions of the cracks in the camera's frame.
     rays: Vec<DVec3>,
+    /// Their places, px.
+    cracks: Vec<DVec2>,
     /// Which way the background is from each crack: unit vectors of the image.
     normals: Vec<DVec2>,
     /// The nearest crack of every pixel.
@@ -65,6 +67,7 @@ impl Evidence {
             rays: rays.ok_or_else(|| Error::NoBorder { camera: name() })?,
             normals: cracks.iter().map(|&crack| outwards(mask, crack)).collect(),
             nearest: nearest_cracks(&cracks, expected),
+            cracks,
         })
     }
 
@@ -81,6 +84,11 @@ impl Evidence {
     /// Unit directions of the cracks, in the camera's frame.
     pub(crate) fn rays(&self) -> &[DVec3] {
         &self.rays
+    }
+
+    /// The places of the cracks, px.
+    pub(crate) fn cracks(&self) -> &[DVec2] {
+        &self.cracks
     }
 
     /// Which way the background is from each crack.

@@ -1,7 +1,10 @@
 //! Damped least squares (Levenberg 1944, Marquardt 1963), coarse to fine.
 
+use rayon::prelude::*;
+
 use crate::Result;
-use crate::problem::{Measure, Moment, Problem, Shared};
+use crate::doubt::Correction;
+use crate::problem::{Frame, Known, Measure, Moment, Problem, Shared};
 use crate::system::{self, FrameSystem, Step};
 use crate::view::View;
 
@@ -16,7 +19,7 @@ pub(crate) struct State {
 struct Look {
     energy: f64,
     frames: Vec<FrameSystem>,
-    shared_prior: Vec<(f64, f64)>,
+    shared_prior: Vec<Known>,
 }
 
 /// How a fit ended.
@@ -26,6 +29,15 @@ pub(crate) struct Outcome {
     pub(crate) frames: Vec<FrameSystem>,
     pub(crate) converged: bool,
     pub(crate) steps: usize,
+}
+
+impl Outcome {
+    /// Root of the mean robust squared distance of the borders, px, given their noise.
+    pub(crate) fn border_px(&self, noise: f64) -> f64 {
+        let energy: f64 = self.frames.iter().map(|frame| frame.border.energy).sum();
+        let count: usize = self.frames.iter().map(|frame| frame.border.count).sum();
+        noise * (2.0 * energy / count.max(1) as f64).sqrt()
+    }
 }
 
 /// When to stop.
@@ -76,35 +88,51 @@ fn look_at(
     views: &mut [Vec<View>],
 ) -> Result<Look> {
     let (mut energy, shared_prior) = problem.shared_prior(&state.shared);
-    let mut frames = Vec::with_capacity(state.moments.len());
-    for (frame, (moment, views)) in state.moments.iter().zip(views).enumerate() {
-        let (own, system) = problem.look(frame, moment, &state.shared, measure, views)?;
-        energy += own;
-        frames.push(system);
+    let looks = state.moments.par_iter().zip(views).enumerate();
+    let frames: Vec<FrameSystem> = looks
+        .map(|(frame, (moment, views))| problem.look(frame, moment, &state.shared, measure, views))
+        .collect::<Result<_>>()?;
+    for frame in &frames {
+        energy += frame.energy;
     }
     Ok(Look { energy, frames, shared_prior })
 }
 
+/// How well each view of each frame agrees with its silhouette: intersection over union.
+pub(crate) fn overlaps(
+    problem: &Problem<'_>,
+    state: &State,
+    measure: Measure,
+    views: &mut [Vec<View>],
+) -> Result<Vec<Vec<f64>>> {
+    // Draws the state; what was drawn last may be a step that was not taken.
+    look_at(problem, state, measure, views)?;
+    let of_frame = |(frame, views): (&Frame<'_>, &Vec<View>)| {
+        views.iter().zip(frame.evidence).map(|(view, seen)| seen.overlap(view.drawn())).collect()
+    };
+    Ok(problem.frames.iter().zip(&*views).map(of_frame).collect())
+}
+
 fn moved(problem: &Problem<'_>, state: &State, step: &Step) -> State {
     let mut state = state.clone();
-    for ((moment, frame), step) in state.moments.iter_mut().zip(&problem.frames).zip(&step.poses) {
-        let (pose, margins) = step.split_at(frame.prior.dofs().len());
+    for ((moment, frame), step) in state.moments.iter_mut().zip(&problem.frames).zip(&step.own) {
+        let (pose, step) = step.split_at(frame.prior.dofs().len());
         for (&dof, step) in frame.prior.dofs().iter().zip(pose) {
             moment.pose[dof] += step;
         }
+        let (margins, step) = step.split_at(moment.margins.len());
         for (margin, step) in moment.margins.iter_mut().zip(margins) {
             *margin += step;
         }
+        let steps = step.chunks_exact(Correction::NUMBERS);
+        moment.corrections.iter_mut().zip(steps).for_each(|(own, step)| own.stepped(step));
     }
-    let mut rest = step.shared.iter();
-    let mut take = || rest.next().copied().unwrap_or(0.0);
-    if problem.freedom.hand.is_some() {
-        state.shared.proportions.logarithms.iter_mut().for_each(|number| *number += take());
+    let hand = step.shared.len() - Correction::NUMBERS * state.shared.corrections.len();
+    let (hand, cameras) = step.shared.split_at(hand);
+    for (number, step) in state.shared.proportions.logarithms.iter_mut().zip(hand) {
+        *number += step;
     }
-    if problem.freedom.cameras.is_some() {
-        for part in state.shared.corrections.iter_mut().flatten() {
-            *part += glam::DVec3::new(take(), take(), take());
-        }
-    }
+    let steps = cameras.chunks_exact(Correction::NUMBERS);
+    state.shared.corrections.iter_mut().zip(steps).for_each(|(own, step)| own.stepped(step));
     state
 }

@@ -1,5 +1,7 @@
 #![doc = include_str!("../README.md")]
 
+mod calibration;
+mod doubt;
 mod error;
 mod evidence;
 mod fit;
@@ -12,7 +14,9 @@ mod search;
 mod system;
 mod view;
 
+pub use calibration::{Calibrated, Calibration, CalibrationFrame};
+pub use doubt::{CameraDoubt, HandDoubt, Moves};
 pub use error::{Error, Result};
 pub use evidence::Evidence;
 pub use prior::PosePrior;
-pub use refinement::{Level, Refined, Refinement};
+pub use refinement::{Doubt, Level, Refined, Refinement};

@@ -1,5 +1,6 @@
 //! What is known of a pose before looking at borders.
 
+use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, Side};
 use phalanx_hand::{Digit, Dof, Pose, Unit, abduction_limit};
 
@@ -55,10 +56,80 @@ impl PosePrior {
         let factor = square.llt(Side::Lower).map_err(|_| Error::Precision {
             reason: "cannot be had: the covariance is not positive definite".to_owned(),
         })?;
-        let inverse = faer::linalg::solvers::DenseSolveCore::inverse(&factor);
+        let inverse = factor.inverse();
         let precision =
             (0..count * count).map(|k| inverse[(k % count, k / count)]).collect();
         Self { mean, dofs: dofs.to_vec(), covariance: covariance.to_vec(), precision }.checked()
+    }
+
+    /// The Gaussian of some poses' numbers, of those that vary among them.
+    ///
+    /// # Errors
+    /// No pose, or one that is not finite.
+    pub fn of_poses(poses: &[Pose]) -> Result<Self> {
+        // What no pose varies further is no certainty.
+        const LEAST_DEG: f64 = 0.5;
+        let count = poses.len() as f64;
+        let mut mean = Pose::REST;
+        for pose in poses {
+            mean.0.iter_mut().zip(pose.0).for_each(|(mean, value)| *mean += value / count);
+        }
+        let varies = |dof: &Dof| poses.iter().any(|pose| pose[*dof] != poses[0][*dof]);
+        let dofs: Vec<Dof> = Dof::ALL.into_iter().filter(varies).collect();
+        if poses.is_empty() {
+            return Err(Error::NoEvidence);
+        }
+        let mut covariance = Vec::with_capacity(dofs.len() * dofs.len());
+        for &a in &dofs {
+            for &b in &dofs {
+                let products = poses.iter().map(|pose| (pose[a] - mean[a]) * (pose[b] - mean[b]));
+                let least = if a == b { LEAST_DEG.to_radians().powi(2) } else { 0.0 };
+                covariance.push(products.sum::<f64>() / count + least);
+            }
+        }
+        Self::correlated(mean, &dofs, &covariance)
+    }
+
+    /// What both say, as independent witnesses: the product of the two Gaussians. A number that
+    /// either knows exactly is known.
+    ///
+    /// # Errors
+    /// Deviations so far apart that the product has no covariance to working precision.
+    pub fn and(&self, other: &Self) -> Result<Self> {
+        let dofs: Vec<Dof> =
+            self.dofs.iter().copied().filter(|dof| other.dofs.contains(dof)).collect();
+        let count = dofs.len();
+        let mut precision = Mat::<f64>::zeros(count, count);
+        let mut pull = Mat::<f64>::zeros(count, 1);
+        for witness in [self, other] {
+            let slot = |dof: &Dof| witness.dofs.iter().position(|own| own == dof);
+            let slots: Vec<usize> = dofs.iter().filter_map(slot).collect();
+            let all = witness.dofs.len();
+            for (j, &column) in slots.iter().enumerate() {
+                for (i, &row) in slots.iter().enumerate() {
+                    let known = witness.precision[column * all + row];
+                    precision[(i, j)] += known;
+                    pull[(i, 0)] += known * witness.mean[dofs[j]];
+                }
+            }
+        }
+        let factor = precision.llt(Side::Lower).map_err(|_| Error::Precision {
+            reason: "of the two is not positive definite".to_owned(),
+        })?;
+        let at = factor.solve(&pull);
+        let covariance = factor.inverse();
+        let mut mean = self.mean;
+        for dof in self.dofs.iter().filter(|dof| !other.dofs.contains(dof)) {
+            mean[*dof] = other.mean[*dof];
+        }
+        for (k, &dof) in dofs.iter().enumerate() {
+            mean[dof] = at[(k, 0)];
+        }
+        let flat = |matrix: &Mat<f64>| -> Vec<f64> {
+            (0..count * count).map(|k| matrix[(k % count, k / count)]).collect()
+        };
+        let (covariance, precision) = (flat(&covariance), flat(&precision));
+        Self { mean, dofs, covariance, precision }.checked()
     }
 
     fn checked(self) -> Result<Self> {

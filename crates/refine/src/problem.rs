@@ -1,26 +1,28 @@
 //! The energy of a fit, and its normal equations.
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use std::borrow::Cow;
+
+use glam::{DAffine3, DMat3, DVec3};
 use phalanx_hand::{Dof, HandShape, Link, Motions, Pose, PosedHand, Primitive};
 
+use crate::doubt::{CameraDoubt, Correction, HandDoubt, Moves};
 use crate::proportions::{Proportions, Slope};
 use crate::system::{FrameSystem, Row};
 use crate::view::{Match, View};
 use crate::{Evidence, PosePrior, Result};
 
 /// One frame: what its cameras saw, and what is known of its pose.
+#[derive(Clone, Copy)]
 pub(crate) struct Frame<'a> {
     pub(crate) evidence: &'a [Evidence],
     pub(crate) prior: &'a PosePrior,
 }
 
-/// What is fitted besides the poses, and how far it may stray: standard deviations.
+/// What is fitted besides the poses.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Freedom {
-    /// Of the logarithms of a hand's size and of each of its bones and radii.
-    pub(crate) hand: Option<[f64; 2]>,
-    /// Of each camera's turn about the hand, radians, and shift, mm, about each axis.
-    pub(crate) cameras: Option<[f64; 2]>,
+    pub(crate) hand: Option<HandDoubt>,
+    pub(crate) cameras: Option<CameraDoubt>,
 }
 
 /// The unknowns of one frame.
@@ -30,14 +32,16 @@ pub(crate) struct Moment {
     /// How far each view's border lies outside the hand's, px: what segmentation adds all around or
     /// takes away.
     pub(crate) margins: Vec<f64>,
+    /// Of cameras that stand elsewhere in every frame; none of others.
+    pub(crate) corrections: Vec<Correction>,
 }
 
 /// What all frames share.
 #[derive(Debug, Clone)]
 pub(crate) struct Shared {
     pub(crate) proportions: Proportions,
-    /// Each camera's scaled axis of turning, radians, and shift, mm, that the hand seems moved by.
-    pub(crate) corrections: Vec<[DVec3; 2]>,
+    /// Of cameras that stand where they stand; none of others.
+    pub(crate) corrections: Vec<Correction>,
 }
 
 /// The robust measure of residuals (Geman and McClure 1987).
@@ -86,34 +90,47 @@ struct Contact<'a> {
 }
 
 impl Problem<'_> {
-    /// How many numbers all frames share.
-    pub(crate) fn shared_count(&self, shared: &Shared) -> usize {
-        let hand = self.freedom.hand.map_or(0, |_| shared.proportions.logarithms.len());
-        hand + self.freedom.cameras.map_or(0, |_| 6 * shared.corrections.len())
+    /// The unknowns of a frame before anything is known but a pose.
+    pub(crate) fn moment(&self, frame: usize, pose: &Pose) -> Moment {
+        let views = self.frames[frame].evidence.len();
+        let each = self.freedom.cameras.is_some_and(|doubt| doubt.moves == Moves::EveryFrame);
+        Moment {
+            pose: *pose,
+            margins: vec![0.0; views],
+            corrections: vec![Correction::NONE; if each { views } else { 0 }],
+        }
+    }
+
+    /// What all frames share before anything is known.
+    pub(crate) fn shared(&self) -> Shared {
+        let views = self.frames.first().map_or(0, |frame| frame.evidence.len());
+        let all = self.freedom.cameras.is_some_and(|doubt| doubt.moves == Moves::Never);
+        Shared {
+            proportions: Proportions::of(self.given),
+            corrections: vec![Correction::NONE; if all { views } else { 0 }],
+        }
     }
 
     /// What is known of the shared numbers: their energy, and for each its Hessian and gradient.
-    pub(crate) fn shared_prior(&self, shared: &Shared) -> (f64, Vec<(f64, f64)>) {
+    pub(crate) fn shared_prior(&self, shared: &Shared) -> (f64, Vec<Known>) {
         let mut known = Vec::new();
-        let mut energy = 0.0;
-        let mut add = |value: f64, deviation: f64| {
-            let precision = deviation.powi(-2);
-            energy += 0.5 * value * value * precision;
-            known.push((precision, value * precision));
-        };
-        if let Some([size, each]) = self.freedom.hand {
+        if let Some(HandDoubt { size, each }) = self.freedom.hand {
             for (k, &logarithm) in shared.proportions.logarithms.iter().enumerate() {
-                add(logarithm, if k == 0 { size } else { each });
+                known.push(Known::new(logarithm, if k == 0 { size } else { each }));
             }
         }
-        if let Some(deviations) = self.freedom.cameras {
-            for correction in &shared.corrections {
-                for (part, deviation) in correction.iter().zip(deviations) {
-                    part.to_array().into_iter().for_each(|value| add(value, deviation));
-                }
-            }
-        }
-        (energy, known)
+        known.extend(self.known_of(&shared.corrections));
+        (known.iter().map(|known| known.energy).sum(), known)
+    }
+
+    fn known_of(&self, corrections: &[Correction]) -> impl Iterator<Item = Known> {
+        let deviations = self.freedom.cameras.map_or([1.0; 2], |doubt| [doubt.turn, doubt.shift]);
+        let of = move |correction: &Correction| {
+            let parts = [correction.turn, correction.shift].map(|part| part.to_array());
+            let known = move |k: usize| Known::new(parts[k / 3][k % 3], deviations[k / 3]);
+            (0..Correction::NUMBERS).map(known)
+        };
+        corrections.iter().flat_map(of).collect::<Vec<_>>().into_iter()
     }
 
     /// The energy of one frame and its normal equations.
@@ -124,91 +141,134 @@ impl Problem<'_> {
         shared: &Shared,
         measure: Measure,
         views: &mut [View],
-    ) -> Result<(f64, FrameSystem)> {
+    ) -> Result<FrameSystem> {
         let Frame { evidence, prior } = &self.frames[frame];
-        let Moment { pose, margins } = moment;
-        let hand = shared.proportions.hand(self.given);
-        let posed = hand.pose(pose, self.rest);
-        let motions = hand.motions(pose, self.rest);
+        let hand = match self.freedom.hand {
+            Some(_) => shared.proportions.hand(self.given),
+            None => self.given.clone(),
+        };
+        let posed = hand.pose(&moment.pose, self.rest);
+        let motions = hand.motions(&moment.pose, self.rest);
         let slopes = self
             .freedom
             .hand
-            .map(|_| shared.proportions.slopes(self.given, pose, self.rest, &posed));
-        let mut system = FrameSystem::new(prior.dofs().len(), margins.len(), self.shared_count(shared));
-        let mut energy = 0.0;
+            .map(|_| shared.proportions.slopes(self.given, &moment.pose, self.rest, &posed));
+        let known = moment.margins.iter().map(|&margin| Known::new(margin, measure.margin));
+        let known: Vec<Known> = known.chain(self.known_of(&moment.corrections)).collect();
+        let numbers = prior.dofs().len();
+        let of_hand = self.freedom.hand.map_or(0, |_| shared.proportions.logarithms.len());
+        let of_cameras = Correction::NUMBERS * shared.corrections.len();
+        let mut system = FrameSystem::new(numbers + known.len(), of_hand + of_cameras);
+        system.add_prior(prior, &moment.pose);
+        system.add_known(numbers, &known);
+        let mut rows = Rows { dofs: slots(prior.dofs()), own: Row::new(), shared: Row::new() };
         for (v, (view, evidence)) in views.iter_mut().zip(*evidence).enumerate() {
-            let correction = correction(shared.corrections[v], self.rest.translation);
-            let seen: Vec<Primitive>;
-            let solids = if self.freedom.cameras.is_some() {
-                seen = posed.primitives.iter().map(|solid| solid.moved(&correction)).collect();
-                &seen
-            } else {
-                &posed.primitives
-            };
-            view.compare(solids, evidence, measure.every)?;
-            let extrinsics = &evidence.camera().extrinsics;
-            let back = correction.matrix3.transpose() * extrinsics.rotation.transpose();
-            let scale = pixels_per_mm(evidence, self.rest.translation);
-            let mut rows = Rows { dofs: slots(prior.dofs()), pose: Row::new(), shared: Row::new() };
+            let correction = moment.corrections.get(v).or(shared.corrections.get(v));
+            let place = Place::new(evidence, correction, self.rest.translation);
+            view.compare(&place.seen(&posed.primitives), evidence, measure.every)?;
             for found in &view.matches {
-                let residual = scale * found.passing.distance - margins[v];
-                energy += measure.energy(residual);
-                let contact = contact(found, &posed, evidence, back, scale, &correction);
+                let residual = place.scale * found.passing.distance - moment.margins[v];
+                let contact = place.contact(found, &posed);
+                rows.clear();
                 rows.of_pose(&contact, &motions);
-                rows.pose.push((prior.dofs().len() + v, -1.0));
-                rows.shared.clear();
+                rows.own.push((numbers + v, -1.0));
+                if !moment.corrections.is_empty() {
+                    let first = numbers + moment.margins.len() + Correction::NUMBERS * v;
+                    rows.own.extend(place.row(&contact, first));
+                }
                 if let Some(slopes) = &slopes {
-                    rows.of_proportions(&contact, &slopes[found.solid], scale);
+                    rows.of_proportions(&contact, &slopes[found.solid], place.scale);
                 }
-                if self.freedom.cameras.is_some() {
-                    let first = self.shared_count(shared) - 6 * shared.corrections.len() + 6 * v;
-                    rows.of_camera(&contact, first, &correction, self.rest.translation);
+                if !shared.corrections.is_empty() {
+                    rows.shared.extend(place.row(&contact, of_hand + Correction::NUMBERS * v));
                 }
-                let weight = measure.weight(residual);
-                system.add(residual, weight, &rows.pose, &rows.shared);
+                let energy = measure.energy(residual);
+                system.add(residual, energy, measure.weight(residual), &rows.own, &rows.shared);
             }
         }
-        energy += system.add_prior(prior, moment, measure.margin);
-        Ok((energy, system))
+        Ok(system)
     }
 }
 
-/// The motion that a camera seems to give the hand.
-pub(crate) fn correction([turn, shift]: [DVec3; 2], pivot: DVec3) -> DAffine3 {
-    let rotation = DMat3::from_quat(DQuat::from_scaled_axis(turn));
-    DAffine3::from_mat3_translation(rotation, pivot - rotation * pivot + shift)
+/// What is known of a number: that it is 0 to a standard deviation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Known {
+    pub(crate) energy: f64,
+    pub(crate) gradient: f64,
+    pub(crate) hessian: f64,
 }
 
-/// Pixels that a millimetre is wide at the middle of the volume.
-pub(crate) fn pixels_per_mm(evidence: &Evidence, middle: DVec3) -> f64 {
-    let camera = evidence.camera();
-    let intrinsics = &camera.intrinsics;
-    (intrinsics.fx * intrinsics.fy).sqrt() / camera.extrinsics.to_camera(middle).length()
+impl Known {
+    fn new(value: f64, deviation: f64) -> Self {
+        let hessian = deviation.powi(-2);
+        Self { energy: 0.5 * value * value * hessian, gradient: value * hessian, hessian }
+    }
 }
 
-fn contact<'a>(
-    found: &Match,
-    posed: &'a PosedHand,
-    evidence: &Evidence,
-    back: DMat3,
+/// Where a camera stands.
+struct Place<'a> {
+    evidence: &'a Evidence,
+    /// The motion that its correction gives the hand.
+    motion: Option<DAffine3>,
+    /// What the motion turns about.
+    pivot: DVec3,
+    /// Pixels that a millimetre is wide there.
     scale: f64,
-    correction: &DAffine3,
-) -> Contact<'a> {
-    let passing = &found.passing;
-    let balls = posed.primitives[found.solid].balls();
-    let points = match passing.point {
-        Some(point) => {
-            let world = evidence.camera().extrinsics.to_world(point);
-            let uncorrected = correction.inverse().transform_point3(world);
-            [(1.0, uncorrected), (0.0, DVec3::ZERO), (0.0, DVec3::ZERO)]
+    /// From the camera's directions to the world's, as they are before the motion.
+    back: DMat3,
+}
+
+impl<'a> Place<'a> {
+    fn new(evidence: &'a Evidence, correction: Option<&Correction>, pivot: DVec3) -> Self {
+        let camera = evidence.camera();
+        let focal = (camera.intrinsics.fx * camera.intrinsics.fy).sqrt();
+        let motion = correction.map(|correction| correction.motion(pivot));
+        let turned = motion.map_or(DMat3::IDENTITY, |motion| motion.matrix3.transpose());
+        Self {
+            evidence,
+            motion,
+            pivot,
+            scale: focal / camera.extrinsics.to_camera(pivot).length(),
+            back: turned * camera.extrinsics.rotation.transpose(),
         }
-        None => [0, 1, 2].map(|k| (passing.weights[k], balls[k.min(balls.len() - 1)].center)),
-    };
-    Contact {
-        links: &posed.links[found.solid],
-        weights: passing.weights,
-        points,
-        normal: back * passing.normal * scale,
+    }
+
+    /// The solids as they seem to stand.
+    fn seen<'s>(&self, solids: &'s [Primitive]) -> Cow<'s, [Primitive]> {
+        match self.motion {
+            Some(motion) => solids.iter().map(|solid| solid.moved(&motion)).collect(),
+            None => Cow::Borrowed(solids),
+        }
+    }
+
+    fn contact<'p>(&self, found: &Match, posed: &'p PosedHand) -> Contact<'p> {
+        let passing = &found.passing;
+        let balls = posed.primitives[found.solid].balls();
+        let points = match passing.point {
+            Some(point) => {
+                let world = self.evidence.camera().extrinsics.to_world(point);
+                let motion = self.motion.unwrap_or(DAffine3::IDENTITY);
+                let nothing = (0.0, DVec3::ZERO);
+                [(1.0, motion.inverse().transform_point3(world)), nothing, nothing]
+            }
+            None => [0, 1, 2].map(|k| (passing.weights[k], balls[k.min(balls.len() - 1)].center)),
+        };
+        Contact {
+            links: &posed.links[found.solid],
+            weights: passing.weights,
+            points,
+            normal: self.back * passing.normal * self.scale,
+        }
+    }
+
+    /// The slopes of a correction, whose numbers begin at `first`.
+    fn row(&self, contact: &Contact<'_>, first: usize) -> impl Iterator<Item = (usize, f64)> {
+        let motion = self.motion.unwrap_or(DAffine3::IDENTITY);
+        let middle: DVec3 = contact.points.iter().map(|(weight, point)| *point * *weight).sum();
+        let arm = motion.transform_point3(middle) - self.pivot;
+        let normal = motion.transform_vector3(contact.normal);
+        let slopes = [arm.cross(normal).to_array(), normal.to_array()];
+        (0..Correction::NUMBERS).map(move |k| (first + k, slopes[k / 3][k % 3]))
     }
 }
 
@@ -224,13 +284,17 @@ fn slots(dofs: &[Dof]) -> [Option<usize>; Dof::COUNT] {
 /// Memory for the rows of one residual.
 struct Rows {
     dofs: [Option<usize>; Dof::COUNT],
-    pose: Row,
+    own: Row,
     shared: Row,
 }
 
 impl Rows {
+    fn clear(&mut self) {
+        self.own.clear();
+        self.shared.clear();
+    }
+
     fn of_pose(&mut self, contact: &Contact<'_>, motions: &Motions) {
-        self.pose.clear();
         let Contact { links, points, normal, .. } = contact;
         let mut k = 0;
         while k < 3 {
@@ -248,14 +312,14 @@ impl Rows {
             for dof in link.dofs() {
                 if let Some(slot) = self.dofs[dof.index()] {
                     let slope = weight * normal.dot(motions.of(dof).velocity(moment / weight));
-                    match self.pose.iter_mut().find(|(other, _)| *other == slot) {
+                    match self.own.iter_mut().find(|(other, _)| *other == slot) {
                         Some((_, sum)) => *sum += slope,
-                        None => self.pose.push((slot, slope)),
+                        None => self.own.push((slot, slope)),
                     }
                 }
             }
         }
-        self.pose.sort_unstable_by_key(|&(slot, _)| slot);
+        self.own.sort_unstable_by_key(|&(slot, _)| slot);
     }
 
     fn of_proportions(&mut self, contact: &Contact<'_>, slopes: &[Vec<Slope>; 3], scale: f64) {
@@ -269,20 +333,5 @@ impl Rows {
             }
         }
         self.shared.sort_unstable_by_key(|&(number, _)| number);
-    }
-
-    fn of_camera(
-        &mut self,
-        contact: &Contact<'_>,
-        first: usize,
-        correction: &DAffine3,
-        pivot: DVec3,
-    ) {
-        let middle: DVec3 = contact.points.iter().map(|(weight, point)| *point * *weight).sum();
-        let arm = correction.transform_point3(middle) - pivot;
-        let normal = correction.transform_vector3(contact.normal);
-        let slopes = [arm.cross(normal), normal];
-        let numbers = slopes.iter().flat_map(DVec3::to_array);
-        self.shared.extend(numbers.enumerate().map(|(k, slope)| (first + k, slope)));
     }
 }

@@ -11,7 +11,7 @@ use crate::{Evidence, PosePrior, Result};
 
 /// Steps along the two directions in which the prior leaves a digit most freedom, in standard
 /// deviations.
-const STEPS: [f64; 5] = [-1.6, -0.8, 0.0, 0.8, 1.6];
+const STEPS: [f64; 6] = [-2.1, -1.4, -0.7, 0.7, 1.4, 2.1];
 
 /// Energy of a pixel that differs.
 const PIXEL: f64 = 1.0;
@@ -56,12 +56,13 @@ pub(crate) fn try_postures(
             Ok(PIXEL * f64::from(differing) + prior.energy(pose))
         };
         let mut best = (cost(&pose)?, pose);
-        for a in STEPS {
-            for b in STEPS {
-                let mut candidate = pose;
-                for (dof, [along, across]) in digit.dofs().into_iter().zip(&directions) {
+        for direction in 0..2 {
+            let from = best.1;
+            for step in STEPS {
+                let mut candidate = from;
+                for (dof, directions) in digit.dofs().into_iter().zip(&directions) {
                     let (low, high) = dof.range();
-                    candidate[dof] = (pose[dof] + a * along + b * across).clamp(low, high);
+                    candidate[dof] = (from[dof] + step * directions[direction]).clamp(low, high);
                 }
                 let cost = cost(&candidate)?;
                 if cost < best.0 {

@@ -18,6 +18,10 @@ pub(crate) struct Match {
     pub(crate) passing: Passing,
 }
 
+/// A drawn border that is as close as this, px, to an observed one says nothing that the observed one
+/// does not say.
+const CLOSE: f64 = 1.2;
+
 /// A hull, and where its outline may be.
 #[derive(Debug, Clone)]
 struct Seen {
@@ -71,10 +75,13 @@ impl View {
             self.matches.push(found);
         }
         for &crack in self.cracks.iter().step_by(every) {
+            let nearest = evidence.nearest(crack);
+            if evidence.cracks()[nearest].distance_squared(crack) < CLOSE * CLOSE {
+                continue;
+            }
             let Some(direction) = camera.intrinsics.to_normalised(crack) else { continue };
             let own = closest(&self.seen, direction.extend(1.0).normalize(), None, last);
             last = own.solid;
-            let nearest = evidence.nearest(crack);
             if own.passing.normal.truncate().dot(evidence.normals()[nearest]) > 0.0 {
                 continue;
             }
