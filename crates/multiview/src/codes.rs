@@ -86,8 +86,7 @@ impl Codes {
 impl From<Concatenation> for Codes {
     fn from(joined: Concatenation) -> Self {
         let voting = joined.voting();
-        let coding =
-            |codebook: &_| AnyCoding::Counts { codebook: Clone::clone(codebook), voting };
+        let coding = |codebook: &_| AnyCoding::Counts { codebook: Clone::clone(codebook), voting };
         Self { views: joined.codebooks().iter().map(coding).collect() }
     }
 }
