@@ -27,6 +27,12 @@ pub(crate) struct Arguments {
     margin: f64,
     #[arg(long)]
     beyond: Option<f64>,
+    #[arg(long)]
+    model: Option<std::path::PathBuf>,
+    #[arg(long, default_value_t = 4000)]
+    samples: usize,
+    #[arg(long)]
+    cameras: bool,
 }
 
 fn gauss(r: &mut ItemRandom) -> f64 {
@@ -72,10 +78,34 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
     }
     let prior0 = PosePrior::correlated(Pose::REST, &dofs, &cov)?;
     let refinement =
-        Refinement { levels: a.levels.iter().map(|l| { let p: Vec<f64> = l.split('/').map(|x| x.parse().unwrap()).collect(); phalanx_refine::Level { reach: p[0], every: p[1] as usize, steps: p[2] as usize } }).collect(), noise: a.noise, margin: a.margin, doubt: a.beyond.map(|beyond| phalanx_refine::Doubt { beyond, ..Default::default() }) };
+        Refinement { levels: a.levels.iter().map(|l| { let p: Vec<f64> = l.split('/').map(|x| x.parse().unwrap()).collect(); phalanx_refine::Level { reach: p[0], every: p[1] as usize, steps: p[2] as usize } }).collect(), noise: a.noise, margin: a.margin, doubt: a.beyond.map(|beyond| phalanx_refine::Doubt { beyond, cameras: a.cameras.then(|| phalanx_refine::Doubt::default().cameras.unwrap()), ..Default::default() }) };
     let describer = SceneDescriber::new(&rig, OrientationRule::default())?;
     let cams = rig.cameras.iter().map(working_camera).collect::<Result<Vec<_>, _>>()?;
     let step = 2000 / a.count;
+    let estimator = match &a.model {
+        None => None,
+        Some(path) if path.exists() => Some(phalanx::Estimator::from_bytes(&std::fs::read(path)?)?),
+        Some(path) => {
+            let t = std::time::Instant::now();
+            let preset = if a.samples <= 4000 { phalanx::Preset::Fast } else { phalanx::Preset::Balanced };
+            let scenes = crate::sets::random(&rig, &hand, a.samples, crate::sets::Augment::Yes);
+            let bar = crate::progress::Bar::new();
+            let e = preset.training().shard(&rig, &hand, &scenes, phalanx::Shard::WHOLE, &bar)?.finish()?;
+            std::fs::write(path, e.to_bytes()?)?;
+            println!("trained in {:.0} s", t.elapsed().as_secs_f64());
+            Some(e)
+        }
+    };
+    let poses = crate::sets::random(&rig, &hand, 2000, crate::sets::Augment::No).poses;
+    let refiner = phalanx::Refiner::new(&rig, &hand, &poses, refinement.clone())?;
+    if let Some(e) = &estimator {
+        let mut ws = phalanx::Workspace::default();
+        let mut d = describer.clone();
+        let sil: Vec<_> = d.silhouettes(&set.scene(0))?.cloned().collect();
+        let t = std::time::Instant::now();
+        for _ in 0..20 { e.estimate_silhouettes(&sil, &mut ws)?; }
+        println!("regression {:.2} ms", t.elapsed().as_secs_f64() * 50.0);
+    }
     let out: Vec<_> = (0..a.count)
         .into_par_iter()
         .map_init(
@@ -99,6 +129,12 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
                     let (l, h) = dof.range();
                     start[dof] = start[dof].clamp(l, h);
                 }
+                let mut std = None;
+                if let Some(e) = &estimator {
+                    let estimate = e.estimate_silhouettes(&sil, &mut phalanx::Workspace::default())?;
+                    start = estimate.pose;
+                    std = Some(estimate.std);
+                }
                 let t = std::time::Instant::now();
                 let ev = cams
                     .iter()
@@ -106,12 +142,13 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
                     .map(|(c, s)| Evidence::new(c, &s.mask))
                     .collect::<Result<Vec<_>, _>>()?;
                 let t1 = t.elapsed().as_secs_f64() * 1e3;
-                let prior = prior0.about(start)?;
+                let prior = match std { Some(std) => refiner.prior(&start, &std)?, None => prior0.about(start)? };
+                let fit_start = if std.is_some() { *prior.mean() } else { start };
                 let h = if a.own { &scene.hand } else { &hand };
-                let refined = refinement.run(h, &rest, &ev, &start, &prior)?;
+                let refined = refinement.run(h, &rest, &ev, &fit_start, &prior)?;
                 let truth = refinement.run(h, &rest, &ev, &scene.pose, &prior)?;
                 let ms = t.elapsed().as_secs_f64() * 1e3;
-                Ok((scene.pose, start, refined, ms, t1, truth))
+                Ok((scene.pose, fit_start, refined, ms, t1, truth))
             },
         )
         .collect::<Result<_>>()?;
