@@ -33,6 +33,10 @@ pub(crate) struct Arguments {
     samples: usize,
     #[arg(long)]
     cameras: bool,
+    #[arg(long, default_value_t = 2)]
+    retries: usize,
+    #[arg(long, default_value_t = 0.33)]
+    content: f64,
 }
 
 fn gauss(r: &mut ItemRandom) -> f64 {
@@ -78,7 +82,7 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
     }
     let prior0 = PosePrior::correlated(Pose::REST, &dofs, &cov)?;
     let refinement =
-        Refinement { levels: a.levels.iter().map(|l| { let p: Vec<f64> = l.split('/').map(|x| x.parse().unwrap()).collect(); phalanx_refine::Level { reach: p[0], every: p[1] as usize, steps: p[2] as usize } }).collect(), noise: a.noise, margin: a.margin, doubt: a.beyond.map(|beyond| phalanx_refine::Doubt { beyond, cameras: a.cameras.then(|| phalanx_refine::Doubt::default().cameras.unwrap()), ..Default::default() }) };
+        Refinement { levels: a.levels.iter().map(|l| { let p: Vec<f64> = l.split('/').map(|x| x.parse().unwrap()).collect(); phalanx_refine::Level { reach: p[0], every: p[1] as usize, steps: p[2] as usize } }).collect(), noise: a.noise, margin: a.margin, retries: a.retries, content: a.content, doubt: a.beyond.map(|beyond| phalanx_refine::Doubt { beyond, cameras: a.cameras.then(|| phalanx_refine::Doubt::default().cameras.unwrap()), ..Default::default() }) };
     let describer = SceneDescriber::new(&rig, OrientationRule::default())?;
     let cams = rig.cameras.iter().map(working_camera).collect::<Result<Vec<_>, _>>()?;
     let step = 2000 / a.count;

@@ -111,6 +111,12 @@ impl Problem<'_> {
         }
     }
 
+    /// How the hand seems moved in a view.
+    pub(crate) fn motion(&self, moment: &Moment, shared: &Shared, view: usize) -> DAffine3 {
+        let correction = moment.corrections.get(view).or(shared.corrections.get(view));
+        correction.map_or(DAffine3::IDENTITY, |own| own.motion(self.rest.translation))
+    }
+
     /// What is known of the shared numbers: their energy, and for each its Hessian and gradient.
     pub(crate) fn shared_prior(&self, shared: &Shared) -> (f64, Vec<Known>) {
         let mut known = Vec::new();

@@ -6,7 +6,7 @@ use phalanx_hand::{HandShape, Pose};
 use crate::doubt::{CameraDoubt, HandDoubt, Moves};
 use crate::fit::{Outcome, State, Stop, descend, overlaps};
 use crate::problem::{Frame, Freedom, Measure, Problem};
-use crate::search::try_postures;
+use crate::search::Search;
 use crate::system::covariance;
 use crate::view::View;
 use crate::{Error, Evidence, PosePrior, Result};
@@ -20,6 +20,11 @@ pub struct Refinement {
     pub noise: f64,
     /// Standard deviation of what segmentation adds to or takes from a whole border, px.
     pub margin: f64,
+    /// How often digits are tried in other postures again where borders stay further apart than
+    /// `content`.
+    pub retries: usize,
+    /// Root of the mean (robust) squared distance of the borders that needs no second try, px.
+    pub content: f64,
     /// What may be otherwise than given; `None` where hand and cameras are certain.
     pub doubt: Option<Doubt>,
 }
@@ -36,6 +41,12 @@ pub struct Doubt {
     pub hand: Option<HandDoubt>,
     /// The cameras.
     pub cameras: Option<CameraDoubt>,
+}
+
+/// What is tried in other postures.
+enum Tries {
+    Digits,
+    Pairs,
 }
 
 /// Share of the energy that a step must win to be followed by another.
@@ -82,6 +93,8 @@ impl Default for Refinement {
             levels: vec![level(12.0, 4, 6), level(3.0, 2, 6), level(1.0, 1, 6)],
             noise: 0.5,
             margin: 1.0,
+            retries: 2,
+            content: 0.33,
             doubt: None,
         }
     }
@@ -131,8 +144,9 @@ impl Refinement {
             freedom: Freedom::default(),
         };
         let mut best = self.descend(&problem, start, &mut views)?;
-        let mut doubted = false;
-        if let Some(doubt) = self.doubt.filter(|doubt| best.border_px(self.noise) > doubt.beyond) {
+        let beyond = self.doubt.map_or(f64::INFINITY, |doubt| doubt.beyond);
+        let doubted = best.border_px(self.noise) > beyond;
+        if let (true, Some(doubt)) = (doubted, self.doubt) {
             problem.freedom = Freedom { hand: doubt.hand, cameras: doubt.cameras };
             let state = State {
                 moments: vec![problem.moment(0, &best.state.moments[0].pose)],
@@ -141,7 +155,17 @@ impl Refinement {
             let steps = best.steps;
             best = self.from_level(1, &problem, state, &mut views)?;
             best.steps += steps;
-            doubted = true;
+        }
+        for _ in 0..self.retries {
+            if best.border_px(self.noise) <= self.content {
+                break;
+            }
+            let state = self.searched(&problem, &best.state, Tries::Pairs, &mut views)?;
+            let other = self.from_level(1, &problem, state, &mut views)?;
+            if other.energy >= best.energy {
+                break;
+            }
+            best = Outcome { steps: best.steps + other.steps, ..other };
         }
         let overlaps = overlaps(&problem, &best.state, self.finest(), &mut views)?.swap_remove(0);
         Ok(Refined {
@@ -163,14 +187,11 @@ impl Refinement {
         start: &Pose,
         views: &mut [Vec<View>],
     ) -> Result<Outcome> {
-        let Frame { evidence, prior } = problem.frames[0];
         let start = State { moments: vec![problem.moment(0, start)], shared: problem.shared() };
         let coarsest = &self.levels[0];
         let stop = Stop { steps: coarsest.steps, gain: GAIN };
         let coarse = descend(problem, start.clone(), self.measure(coarsest), stop, views)?;
-        let mut state = coarse.state;
-        let pose = &mut state.moments[0].pose;
-        *pose = try_postures(problem.given, problem.rest, evidence, prior, pose, &mut views[0])?;
+        let state = self.searched(problem, &coarse.state, Tries::Digits, views)?;
         let mut after = self.from_level(1, problem, state, views)?;
         after.steps += coarse.steps;
         // What was coarse may have led away from a good start.
@@ -182,6 +203,34 @@ impl Refinement {
         }
         let stop = Stop { steps: self.levels.last().expect("checked").steps, gain: GAIN };
         descend(problem, before.state, finest, stop, views)
+    }
+
+    /// A state with the digits in better postures.
+    fn searched(
+        &self,
+        problem: &Problem<'_>,
+        state: &State,
+        tries: Tries,
+        views: &mut [Vec<View>],
+    ) -> Result<State> {
+        let Frame { evidence, prior } = problem.frames[0];
+        let motions: Vec<DAffine3> =
+            (0..evidence.len()).map(|view| problem.motion(&state.moments[0], &state.shared, view)).collect();
+        let mut search = Search {
+            hand: &state.shared.proportions.hand(problem.given),
+            rest: problem.rest,
+            evidence,
+            prior,
+            motions: &motions,
+            views: &mut views[0],
+        };
+        let mut state = state.clone();
+        let pose = &mut state.moments[0].pose;
+        *pose = match tries {
+            Tries::Digits => search.run(pose)?,
+            Tries::Pairs => search.run_pairs(pose)?,
+        };
+        Ok(state)
     }
 
     /// The levels from one on.
