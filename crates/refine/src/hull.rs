@@ -33,6 +33,14 @@ pub(crate) struct Passing {
     pub(crate) point: Option<DVec3>,
 }
 
+/// Which ball of a hull a ray passes most closely.
+struct Nearest {
+    distance: f64,
+    weights: [f64; 3],
+    /// The ray goes through the middle of the hull.
+    through: bool,
+}
+
 /// A point, line or triangle of the plane z = 1 and how far the outline may be from it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bound {
@@ -62,7 +70,8 @@ impl Bound {
                 edges[0].min(edges[1]).min(edges[2])
             }
         };
-        OBLIQUE * (apart.sqrt() - self.reach) * self.depth
+        let beyond = apart.sqrt() - self.reach;
+        if beyond > 0.0 { OBLIQUE * beyond * self.depth } else { f64::NEG_INFINITY }
     }
 }
 
@@ -78,8 +87,8 @@ impl Hull {
     pub(crate) fn new(solid: &Primitive) -> Self {
         let balls = solid.balls();
         let at = |k: usize| balls[k.min(balls.len() - 1)];
-        let unsquash =
-            matches!(solid, Primitive::GeneralisedCylinder { .. }).then(|| solid.squash().inverse());
+        let unsquash = matches!(solid, Primitive::GeneralisedCylinder { .. })
+            .then(|| solid.squash().inverse());
         let shift = unsquash.map_or(DVec3::ZERO, |m| m * at(0).center - at(0).center);
         Self {
             centers: [0, 1, 2].map(|k| at(k).center + shift),
@@ -116,16 +125,18 @@ impl Hull {
 
     fn pass_round(&self, ray: DVec3) -> Passing {
         let across = self.centers.map(|center| center - ray * center.dot(ray));
-        let (distance, weights) = match self.balls {
-            1 => (across[0].length() - self.radii[0], [1.0, 0.0, 0.0]),
+        let nearest = |distance, weights| Nearest { distance, weights, through: false };
+        let Nearest { distance, weights, through } = match self.balls {
+            1 => nearest(across[0].length() - self.radii[0], [1.0, 0.0, 0.0]),
             2 => {
                 let (distance, t) = self.edge(&across, 0, 1);
-                (distance, [1.0 - t, t, 0.0])
+                nearest(distance, [1.0 - t, t, 0.0])
             }
             _ => self.triangle(&across, ray),
         };
         let offset = across[0] * weights[0] + across[1] * weights[1] + across[2] * weights[2];
-        Passing { distance, weights, normal: offset.normalize_or_zero(), point: None }
+        let normal = if through { DVec3::ZERO } else { offset.normalize_or_zero() };
+        Passing { distance, weights, normal, point: None }
     }
 
     /// ρ of the hull of two balls and the second one's weight.
@@ -149,24 +160,28 @@ impl Hull {
 
     /// ρ of the hull of three balls: on an edge or, where the ray goes through the triangle of the
     /// centres, there.
-    fn triangle(&self, across: &[DVec3; 3], ray: DVec3) -> (f64, [f64; 3]) {
-        let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
+    fn triangle(&self, across: &[DVec3; 3], ray: DVec3) -> Nearest {
+        let mut best =
+            Nearest { distance: f64::INFINITY, weights: [1.0, 0.0, 0.0], through: false };
         for (from, to) in [(0, 1), (1, 2), (2, 0)] {
             let (distance, t) = self.edge(across, from, to);
-            if distance < best.0 {
+            if distance < best.distance {
                 let mut weights = [0.0; 3];
                 weights[from] = 1.0 - t;
                 weights[to] = t;
-                best = (distance, weights);
+                best = Nearest { distance, weights, through: false };
             }
         }
         let areas = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| across[i].cross(across[j]).dot(ray));
         let whole = areas[0] + areas[1] + areas[2];
-        let weights = areas.map(|area| area / whole);
-        if weights.iter().all(|&weight| weight > 0.0) {
-            let radius: f64 = weights.iter().zip(self.radii).map(|(w, r)| w * r).sum();
-            if -radius < best.0 {
-                best = (-radius, weights);
+        if areas.iter().all(|area| area * whole > 0.0) {
+            // The middle is far inside; how far does not matter, but must not jump.
+            let smallest = (0..3).min_by(|&i, &j| self.radii[i].total_cmp(&self.radii[j]));
+            let smallest = smallest.unwrap_or(0);
+            if -self.radii[smallest] < best.distance {
+                let mut weights = [0.0; 3];
+                weights[smallest] = 1.0;
+                return Nearest { distance: -self.radii[smallest], weights, through: true };
             }
         }
         best
@@ -174,5 +189,54 @@ impl Hull {
 
     fn center(&self, weights: &[f64; 3]) -> DVec3 {
         self.centers[0] * weights[0] + self.centers[1] * weights[1] + self.centers[2] * weights[2]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use phalanx_hand::Ball;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn ball() -> impl Strategy<Value = Ball> {
+        (prop::array::uniform3(-60.0..60.0_f64), 2.0..20.0_f64)
+            .prop_map(|(at, radius)| Ball::new(DVec3::from_array(at) + DVec3::Z * 600.0, radius))
+    }
+
+    /// ρ by trying many balls of the hull.
+    fn slow(balls: &[Ball; 3], ray: DVec3) -> f64 {
+        const STEPS: i32 = 60;
+        let mut least = f64::INFINITY;
+        for i in 0..=STEPS {
+            for j in 0..=STEPS - i {
+                let (s, t) = (f64::from(i) / f64::from(STEPS), f64::from(j) / f64::from(STEPS));
+                let weights = [1.0 - s - t, s, t];
+                let center: DVec3 = balls.iter().zip(weights).map(|(b, w)| b.center * w).sum();
+                let radius: f64 = balls.iter().zip(weights).map(|(b, w)| b.radius * w).sum();
+                least = least.min((center - ray * center.dot(ray)).length() - radius);
+            }
+        }
+        least
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(128) })]
+
+        #[test]
+        fn rays_pass_hulls_as_they_pass_the_nearest_of_their_balls(
+            balls in prop::array::uniform3(ball()),
+            at in prop::array::uniform2(-0.15..0.15_f64),
+        ) {
+            let place = DVec2::from_array(at);
+            let ray = place.extend(1.0).normalize();
+            let hull = Hull::new(&Primitive::Wedge(balls));
+            let (fast, slow) = (hull.pass(ray).distance, slow(&balls, ray));
+            // The slow one's balls are a few millimetres apart. Through the middle it is enough to
+            // be inside.
+            let alike = fast <= slow + 1e-9 && slow - fast < 3.0;
+            prop_assert!(alike || (fast < -1.9 && slow < fast), "{fast} is not {slow}");
+            prop_assert!(hull.bound().least(place) <= fast + 1e-9);
+        }
     }
 }

@@ -341,3 +341,143 @@ impl Rows {
         self.shared.sort_unstable_by_key(|&(number, _)| number);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use phalanx_camera::{Camera, Rig};
+    use phalanx_render::Renderer;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::hull::Hull;
+
+    fn rig() -> Rig {
+        Rig::from_toml(include_str!("../../../fixtures/rigs/desk.toml")).unwrap()
+    }
+
+    fn seen(camera: &Camera, hand: &HandShape, pose: &Pose, rest: &DAffine3) -> Evidence {
+        let solids = hand.pose(pose, rest).primitives;
+        let mask = Renderer::new(camera).unwrap().silhouette(&solids).unwrap();
+        Evidence::new(camera, &mask).unwrap()
+    }
+
+    /// The energy of the border when the same rays are held against the same solids.
+    fn energy(
+        problem: &Problem<'_>,
+        moment: &Moment,
+        shared: &Shared,
+        measure: Measure,
+        views: &[View],
+    ) -> f64 {
+        let hand = shared.proportions.hand(problem.given);
+        let posed = hand.pose(&moment.pose, problem.rest);
+        let mut energy = 0.0;
+        for (v, (view, evidence)) in views.iter().zip(problem.frames[0].evidence).enumerate() {
+            let correction = moment.corrections.get(v).or(shared.corrections.get(v));
+            let place = Place::new(evidence, correction, problem.rest.translation);
+            let extrinsics = &evidence.camera().extrinsics;
+            let to_camera =
+                DAffine3::from_mat3_translation(extrinsics.rotation, extrinsics.translation);
+            let solids = place.seen(&posed.primitives);
+            for found in &view.matches {
+                let passing = Hull::new(&solids[found.solid].moved(&to_camera)).pass(found.ray);
+                energy += measure.energy(place.scale * passing.distance - moment.margins[v]);
+            }
+        }
+        energy
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            failure_persistence: None,
+            ..ProptestConfig::with_cases(12)
+        })]
+
+        #[test]
+        fn the_gradient_is_that_of_the_energy(
+            true_pose in prop::array::uniform20(-0.1..0.9_f64),
+            offset in prop::array::uniform20(-0.2..0.2_f64),
+            global in prop::array::uniform8(-0.1..0.1_f64),
+            moves in prop_oneof![Just(Moves::Never), Just(Moves::EveryFrame)],
+        ) {
+            let (rig, given) = (rig(), HandShape::adult());
+            let rest = rig.volume.rest_frame();
+            let mut truth = Pose::REST;
+            truth.0[..20].copy_from_slice(&true_pose);
+            let mut pose = truth;
+            pose.0.iter_mut().zip(offset).for_each(|(angle, offset)| *angle += offset);
+            pose.0[20..].iter_mut().zip(global).for_each(|(number, offset)| *number += offset);
+            let evidence: Vec<Evidence> =
+                rig.cameras.iter().map(|camera| seen(camera, &given, &truth, &rest)).collect();
+            // So vague that only the border has a say.
+            let prior = PosePrior::independent(pose, &[1e6; Dof::COUNT]).unwrap();
+            let problem = Problem {
+                given: &given,
+                rest: &rest,
+                frames: vec![Frame { evidence: &evidence, prior: &prior }],
+                freedom: Freedom {
+                    hand: Some(HandDoubt { size: 1e6, each: 1e6 }),
+                    cameras: Some(CameraDoubt { turn: 1e6, shift: 1e6, moves }),
+                },
+            };
+            let measure = Measure { reach: 3.0, noise: 0.5, margin: 1e6, every: 7 };
+            let (moment, shared) = (problem.moment(0, &pose), problem.shared());
+            let mut views: Vec<View> =
+                evidence.iter().map(|evidence| View::new(evidence).unwrap()).collect();
+            let system = problem.look(0, &moment, &shared, measure, &mut views).unwrap();
+            // Where a ray goes just through the axis of a solid, distances have a kink.
+            let within = |slope: f64, gradient: f64| {
+                (slope - gradient).abs() <= 2e-2 * (1.0 + slope.abs().max(gradient.abs()))
+            };
+            let step = 1e-5;
+            let slope = |change: &dyn Fn(&mut Moment, &mut Shared, f64)| {
+                let at = |step: f64| {
+                    let (mut moment, mut shared) = (moment.clone(), shared.clone());
+                    change(&mut moment, &mut shared, step);
+                    energy(&problem, &moment, &shared, measure, &views)
+                };
+                (at(step) - at(-step)) / (2.0 * step)
+            };
+            for (k, dof) in Dof::ALL.into_iter().enumerate() {
+                // Ranges have a say of their own.
+                if pose.out_of_range().contains(&dof) {
+                    continue;
+                }
+                let slope = slope(&|moment, _, step| moment.pose[dof] += step);
+                let gradient = system.own_gradient()[k];
+                prop_assert!(within(slope, gradient), "{dof}: {slope} is not {gradient}");
+            }
+            for v in 0..evidence.len() {
+                let slope = slope(&|moment, _, step| moment.margins[v] += step);
+                let gradient = system.own_gradient()[Dof::COUNT + v];
+                prop_assert!(within(slope, gradient), "margin {v}: {slope} is not {gradient}");
+            }
+            let bones = shared.proportions.logarithms.len();
+            // The last two are the forearm's, whose end moves with its width.
+            for number in 0..bones - 2 {
+                let slope =
+                    slope(&|_, shared, step| shared.proportions.logarithms[number] += step);
+                let gradient = system.shared_gradient()[number];
+                // The size changes the forearm too.
+                let alike = number == 0 || within(slope, gradient);
+                prop_assert!(alike, "bone {number}: {slope} is not {gradient}");
+            }
+            for v in 0..evidence.len() {
+                let slope = slope(&|moment, shared, step| {
+                    let corrections = match moves {
+                        Moves::Never => &mut shared.corrections,
+                        Moves::EveryFrame => &mut moment.corrections,
+                    };
+                    corrections[v].turn.x += step;
+                });
+                let gradient = match moves {
+                    Moves::Never => system.shared_gradient()[bones + 6 * v],
+                    Moves::EveryFrame => {
+                        system.own_gradient()[Dof::COUNT + evidence.len() + 6 * v]
+                    }
+                };
+                prop_assert!(within(slope, gradient), "camera {v}: {slope} is not {gradient}");
+            }
+        }
+    }
+}

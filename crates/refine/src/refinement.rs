@@ -49,6 +49,9 @@ enum Tries {
     Pairs,
 }
 
+/// A start of at most so many times the energy that was reached from it is good in itself.
+const GOOD: f64 = 2.0;
+
 /// Share of the energy that a step must win to be followed by another.
 const GAIN: f64 = 1e-3;
 
@@ -106,7 +109,7 @@ impl Default for Doubt {
     fn default() -> Self {
         let turn = 1.2_f64.to_radians();
         Self {
-            beyond: 0.4,
+            beyond: 0.38,
             hand: Some(HandDoubt { size: 0.02, each: 0.06 }),
             cameras: Some(CameraDoubt { turn, shift: 0.5, moves: Moves::EveryFrame }),
         }
@@ -195,14 +198,14 @@ impl Refinement {
         let mut after = self.from_level(1, problem, state, views)?;
         after.steps += coarse.steps;
         // What was coarse may have led away from a good start.
-        let finest = self.finest();
         let stay = Stop { steps: 0, gain: GAIN };
-        let before = descend(problem, start, finest, stay, views)?;
-        if after.energy <= before.energy {
+        let before = descend(problem, start, self.finest(), stay, views)?;
+        if before.energy > GOOD * after.energy {
             return Ok(after);
         }
-        let stop = Stop { steps: self.levels.last().expect("checked").steps, gain: GAIN };
-        descend(problem, before.state, finest, stop, views)
+        let mut near = self.from_level(self.levels.len(), problem, before.state, views)?;
+        near.steps += after.steps;
+        Ok(if near.energy < after.energy { near } else { after })
     }
 
     /// A state with the digits in better postures.
@@ -214,8 +217,9 @@ impl Refinement {
         views: &mut [Vec<View>],
     ) -> Result<State> {
         let Frame { evidence, prior } = problem.frames[0];
-        let motions: Vec<DAffine3> =
-            (0..evidence.len()).map(|view| problem.motion(&state.moments[0], &state.shared, view)).collect();
+        let motions: Vec<DAffine3> = (0..evidence.len())
+            .map(|view| problem.motion(&state.moments[0], &state.shared, view))
+            .collect();
         let mut search = Search {
             hand: &state.shared.proportions.hand(problem.given),
             rest: problem.rest,

@@ -51,6 +51,16 @@ impl FrameSystem {
         }
     }
 
+    #[cfg(test)]
+    pub(crate) fn own_gradient(&self) -> &[f64] {
+        &self.own_gradient
+    }
+
+    #[cfg(test)]
+    pub(crate) fn shared_gradient(&self) -> &[f64] {
+        &self.shared_gradient
+    }
+
     /// Adds what is known of the pose, whose numbers come first.
     pub(crate) fn add_prior(&mut self, prior: &PosePrior, pose: &Pose) {
         self.energy += prior.add(pose, &mut self.own_gradient, &mut self.own_hessian, self.own);
@@ -66,14 +76,7 @@ impl FrameSystem {
     }
 
     /// Adds a residual of the border. Both rows are in ascending order.
-    pub(crate) fn add(
-        &mut self,
-        residual: f64,
-        energy: f64,
-        weight: f64,
-        own: &Row,
-        shared: &Row,
-    ) {
+    pub(crate) fn add(&mut self, residual: f64, energy: f64, weight: f64, own: &Row, shared: &Row) {
         self.energy += energy;
         self.border.energy += energy;
         self.border.count += 1;
@@ -119,11 +122,7 @@ pub(crate) struct Step {
 /// numbers.
 ///
 /// `None` where the Hessian is not positive definite to working precision.
-pub(crate) fn solve(
-    frames: &[FrameSystem],
-    shared_prior: &[Known],
-    damping: f64,
-) -> Option<Step> {
+pub(crate) fn solve(frames: &[FrameSystem], shared_prior: &[Known], damping: f64) -> Option<Step> {
     let shared = shared_prior.len();
     let mut reduced = Mat::<f64>::zeros(shared, shared);
     let mut slope = Mat::<f64>::zeros(shared, 1);

@@ -12,6 +12,8 @@ use crate::{Error, Evidence, Result};
 /// A ray of the observed border and the solid that should touch it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Match {
+    /// The ray, in the camera's frame.
+    pub(crate) ray: DVec3,
     /// Which solid.
     pub(crate) solid: usize,
     /// Where the ray passes it.
@@ -55,7 +57,12 @@ impl View {
     /// Matches solids, in the world, with the border that was seen, both ways: each observed crack
     /// with the solid that it is least outside of, and each crack of the drawn silhouette's solid
     /// with the observed crack that is nearest to it.
-    pub(crate) fn compare(&mut self, solids: &[Primitive], evidence: &Evidence, every: usize) -> Result<()> {
+    pub(crate) fn compare(
+        &mut self,
+        solids: &[Primitive],
+        evidence: &Evidence,
+        every: usize,
+    ) -> Result<()> {
         let camera = evidence.camera();
         self.renderer
             .silhouette_into(solids, &mut self.drawn)
@@ -85,8 +92,9 @@ impl View {
             if own.passing.normal.truncate().dot(evidence.normals()[nearest]) > 0.0 {
                 continue;
             }
-            let passing = self.seen[last].hull.pass(evidence.rays()[nearest]);
-            self.matches.push(Match { solid: last, passing });
+            let ray = evidence.rays()[nearest];
+            let passing = self.seen[last].hull.pass(ray);
+            self.matches.push(Match { ray, solid: last, passing });
         }
         Ok(())
     }
@@ -116,25 +124,26 @@ impl Seen {
     }
 }
 
-/// The solid that a ray is least outside of; `hint` is looked at first. Where the outline's outward
-/// normal is known, solids whose outline faces another way count as further off.
-fn closest(seen: &[Seen], ray: DVec3, outwards: Option<DVec2>, hint: usize) -> Match {
-    // mm
-    let kappa: f64 = 6.0;
+/// The solid that a ray is least outside of; `hint` is looked at first. Where it is known which way
+/// the background is from the ray, solids whose outline faces another way count as further off.
+fn closest(seen: &[Seen], ray: DVec3, background: Option<DVec2>, hint: usize) -> Match {
+    /// How much further an outline that faces away counts as, mm: about a finger's radius, so that a
+    /// finger's one side is not taken for the other.
+    const FACING: f64 = 12.0;
     let place = ray.truncate() / ray.z;
     let cost = |passing: &Passing| {
-        let facing = outwards.map_or(0.0, |o| 1.0 + o.dot(passing.normal.truncate()));
-        passing.distance + kappa * facing
+        // The normal points from the ray into the solid.
+        let turned = background.map_or(0.0, |out| 1.0 + out.dot(passing.normal.truncate()));
+        passing.distance + 0.5 * FACING * turned
     };
-    let mut best = Match { solid: hint, passing: seen[hint].hull.pass(ray) };
-    let mut best_cost = cost(&best.passing);
+    let mut best = Match { ray, solid: hint, passing: seen[hint].hull.pass(ray) };
+    let mut least = cost(&best.passing);
     for (solid, candidate) in seen.iter().enumerate() {
-        if solid != hint && candidate.bound.least(place) < best_cost {
+        if solid != hint && candidate.bound.least(place) < least {
             let passing = candidate.hull.pass(ray);
-            let c = cost(&passing);
-            if c < best_cost {
-                best = Match { solid, passing };
-                best_cost = c;
+            let cost = cost(&passing);
+            if cost < least {
+                (best, least) = (Match { ray, solid, passing }, cost);
             }
         }
     }
