@@ -4,6 +4,7 @@ mod damage;
 mod desk;
 mod estimating;
 mod invariance;
+mod learnt_metric;
 mod model_file;
 mod photographs;
 mod refusals;
