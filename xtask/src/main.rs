@@ -33,6 +33,7 @@ mod split;
 mod table1;
 mod train;
 mod trajectories;
+mod wrist_model;
 
 use std::process::ExitCode;
 
@@ -70,6 +71,8 @@ enum Command {
     Fixtures(fixtures::Arguments),
     /// Train the skin model that the segmentation crate ships.
     SkinModel(skin_model::Arguments),
+    /// Train the wrist model that the segmentation crate ships, and say how well it finds wrists.
+    WristModel(wrist_model::Arguments),
     /// Draw silhouettes, contours and axes over photographs, and measure the skin model.
     ContactSheet(contact_sheet::Arguments),
     /// Write the README's table: Table 1 beside what was never seen.
@@ -110,6 +113,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::Headline(arguments) => headline::run(arguments)?,
         Command::Fixtures(arguments) => fixtures::run(arguments)?,
         Command::SkinModel(arguments) => skin_model::run(arguments)?,
+        Command::WristModel(arguments) => wrist_model::run(arguments)?,
         Command::ContactSheet(arguments) => contact_sheet::run(arguments)?,
         Command::Pictures(arguments) => pictures::run(arguments)?,
         Command::Performance(arguments) => performance::run(arguments)?,
