@@ -33,6 +33,7 @@ mod split;
 mod table1;
 mod train;
 mod trajectories;
+mod two_camera;
 mod wrist_model;
 
 use std::process::ExitCode;
@@ -75,6 +76,8 @@ enum Command {
     WristModel(wrist_model::Arguments),
     /// Draw silhouettes, contours and axes over photographs, and measure the skin model.
     ContactSheet(contact_sheet::Arguments),
+    /// Find a real hand in the frames of two calibrated webcams, and draw what was seen.
+    TwoCamera(two_camera::Arguments),
     /// Write the README's table: Table 1 beside what was never seen.
     Headline(headline::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
@@ -115,6 +118,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::SkinModel(arguments) => skin_model::run(arguments)?,
         Command::WristModel(arguments) => wrist_model::run(arguments)?,
         Command::ContactSheet(arguments) => contact_sheet::run(arguments)?,
+        Command::TwoCamera(arguments) => two_camera::run(arguments)?,
         Command::Pictures(arguments) => pictures::run(arguments)?,
         Command::Performance(arguments) => performance::run(arguments)?,
     }

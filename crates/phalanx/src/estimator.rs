@@ -1,13 +1,16 @@
 //! The fitted estimator: from one picture per camera to a pose.
 
 use glam::DVec3;
+use image::GrayImage;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
 use phalanx_multiview::Concatenation;
 use phalanx_rvm::Model;
 use phalanx_segmentation::{Forearm, Silhouette};
 
-use crate::{Describer, Error, OrientationRule, Picture, Result};
+use crate::{
+    Describer, Description, Error, Framing, OrientationRule, Picture, Result, Window, WindowFinder,
+};
 
 /// A pose estimator for one rig and one hand; see [`Training`](crate::Training) for how to get
 /// one.
@@ -15,7 +18,7 @@ use crate::{Describer, Error, OrientationRule, Picture, Result};
 pub struct Estimator {
     rig: Rig,
     hand: HandShape,
-    orientation: OrientationRule,
+    description: Description,
     views: Concatenation,
     model: Model,
 }
@@ -37,6 +40,7 @@ pub struct Estimate {
 #[derive(Debug, Default)]
 pub struct Workspace {
     silhouettes: Vec<Silhouette>,
+    windows: Vec<Window>,
     memory: Memory,
 }
 
@@ -44,6 +48,7 @@ pub struct Workspace {
 #[derive(Debug, Default)]
 struct Memory {
     describer: Describer,
+    windows: WindowFinder,
     contexts: Vec<Vec<f32>>,
     views: phalanx_multiview::Scratch,
     x: Vec<f64>,
@@ -56,6 +61,12 @@ impl Workspace {
     pub fn silhouettes(&self) -> &[Silhouette] {
         &self.silhouettes
     }
+
+    /// The windows that the last silhouettes are seen in, where the estimator describes windows; of
+    /// no meaning if it failed.
+    pub fn windows(&self) -> &[Window] {
+        &self.windows
+    }
 }
 
 impl Estimator {
@@ -66,7 +77,7 @@ impl Estimator {
     pub fn from_parts(
         rig: Rig,
         hand: HandShape,
-        orientation: OrientationRule,
+        description: impl Into<Description>,
         views: Concatenation,
         model: Model,
     ) -> Result<Self> {
@@ -87,7 +98,7 @@ impl Estimator {
                 return Err(Error::CodebookBins { camera: camera.name.clone(), found, expected });
             }
         }
-        Ok(Self { rig, hand, orientation, views, model })
+        Ok(Self { rig, hand, description: description.into(), views, model })
     }
 
     /// The cameras and the volume it was learnt for.
@@ -102,7 +113,12 @@ impl Estimator {
 
     /// Which way its shape contexts are turned.
     pub fn orientation(&self) -> OrientationRule {
-        self.orientation
+        self.description.orientation
+    }
+
+    /// How pictures are described.
+    pub fn description(&self) -> Description {
+        self.description
     }
 
     /// Its codebooks.
@@ -126,16 +142,44 @@ impl Estimator {
         workspace: &mut Workspace,
     ) -> Result<Estimate> {
         self.check_count(pictures.len())?;
-        let Workspace { silhouettes, memory } = workspace;
-        silhouettes.resize_with(pictures.len(), Silhouette::default);
-        for ((view, &picture), silhouette) in pictures.iter().enumerate().zip(&mut *silhouettes) {
+        for (view, picture) in pictures.iter().enumerate() {
             self.check_shape(view, picture.size())?;
-            memory
-                .describer
+        }
+        let Workspace { silhouettes, windows, memory } = workspace;
+        silhouettes.resize_with(pictures.len(), Silhouette::default);
+        windows.clear();
+        match self.description.framing {
+            Framing::Picture => self.see_whole(pictures, silhouettes, &mut memory.describer)?,
+            Framing::Window => {
+                let masks = self.masks(pictures)?;
+                *windows = memory.windows.find(&self.rig.cameras, &masks, None)?;
+                memory.windows.silhouettes(windows, silhouettes)?;
+            }
+        }
+        self.look_at(silhouettes, memory)
+    }
+
+    /// The silhouettes of whole pictures.
+    fn see_whole(
+        &self,
+        pictures: &[Picture<'_>],
+        silhouettes: &mut [Silhouette],
+        describer: &mut Describer,
+    ) -> Result<()> {
+        for ((view, &picture), silhouette) in pictures.iter().enumerate().zip(silhouettes) {
+            describer
                 .silhouette(picture, silhouette)
                 .map_err(|reason| Error::Silhouette { camera: self.camera(view), reason })?;
         }
-        self.look_at(silhouettes, memory)
+        Ok(())
+    }
+
+    /// The raw masks of pictures, as large as they are.
+    fn masks(&self, pictures: &[Picture<'_>]) -> Result<Vec<GrayImage>> {
+        let mask = |(view, picture): (usize, &Picture<'_>)| {
+            picture.mask().map_err(|reason| Error::Silhouette { camera: self.camera(view), reason })
+        };
+        pictures.iter().enumerate().map(mask).collect()
     }
 
     /// Estimates the pose from one silhouette per camera, of any size, in the order of the rig's
@@ -158,7 +202,7 @@ impl Estimator {
         contexts.resize_with(silhouettes.len(), Vec::new);
         for ((view, silhouette), kept) in silhouettes.iter().enumerate().zip(contexts) {
             let contexts = describer
-                .contexts(silhouette, self.orientation)
+                .contexts(silhouette, self.orientation())
                 .map_err(|reason| Error::ShapeContext { camera: self.camera(view), reason })?;
             kept.clear();
             kept.extend_from_slice(contexts.values());

@@ -18,9 +18,10 @@ mod scene;
 mod shard;
 mod training;
 mod training_views;
+mod window;
 
 pub use damage::{Border, Damage, Hands};
-pub use describe::{Describer, OrientationRule, WORKING_SIZE, working_camera};
+pub use describe::{Describer, Description, OrientationRule, WORKING_SIZE, working_camera};
 pub use error::{Error, Result};
 pub use estimator::{Estimate, Estimator, Workspace};
 pub use histograms::{ViewCodebooks, describe_with};
@@ -36,6 +37,7 @@ pub use training::{Training, descriptors, targets};
 pub use training_views::{
     PoseContexts, SceneDescriber, describe_each, describe_poses, draw_silhouette,
 };
+pub use window::{Framing, Window, WindowFinder};
 
 /// The example of the repository's README, which must compile.
 #[cfg(doctest)]

@@ -9,16 +9,16 @@ use phalanx_rvm::{Model, ModelParts};
 use serde::{Deserialize, Serialize};
 
 use crate::container::Container;
-use crate::{Estimator, OrientationRule, Result};
+use crate::{Description, Estimator, Result};
 
-const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 2 };
+const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 3 };
 
 /// What the payload holds.
 #[derive(Serialize, Deserialize)]
 struct Payload<'a> {
     rig: Cow<'a, Rig>,
     hand: Cow<'a, HandShape>,
-    orientation: OrientationRule,
+    description: Description,
     views: Cow<'a, Concatenation>,
     model: Cow<'a, ModelParts>,
 }
@@ -32,7 +32,7 @@ impl Estimator {
         let payload = Payload {
             rig: Cow::Borrowed(self.rig()),
             hand: Cow::Borrowed(self.hand()),
-            orientation: self.orientation(),
+            description: self.description(),
             views: Cow::Borrowed(self.views()),
             model: Cow::Borrowed(self.model().parts()),
         };
@@ -45,12 +45,12 @@ impl Estimator {
     /// Bytes that are no model, of another format, truncated, corrupt, or whose parts do not
     /// fit each other.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let Payload { rig, hand, orientation, views, model } = MODEL.decode(bytes)?;
+        let Payload { rig, hand, description, views, model } = MODEL.decode(bytes)?;
         let model = Model::from_parts(model.into_owned())?;
         Self::from_parts(
             rig.into_owned(),
             hand.into_owned(),
-            orientation,
+            description,
             views.into_owned(),
             model,
         )

@@ -11,11 +11,11 @@ use crate::container::Container;
 use crate::regressor::evenly_spaced;
 use crate::shard::{BLOCK, scenes_of};
 use crate::{
-    Error, Estimator, EvenlySpaced, OrientationRule, Progress, Regressor, Result, Scenes, Shard,
+    Description, Error, Estimator, EvenlySpaced, Progress, Regressor, Result, Scenes, Shard,
     Training, ViewCodebooks, describe_each, describe_with, targets,
 };
 
-const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 1 };
+const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 2 };
 
 /// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
 /// and to [`finish`](Self::finish) the estimator. Its size depends on the regressor's columns and
@@ -35,7 +35,7 @@ pub struct Part {
 struct Basis {
     rig: Rig,
     hand: HandShape,
-    orientation: OrientationRule,
+    description: Description,
     regressor: Regressor,
     codebooks: Concatenation,
     /// Scenes that scaling and Gaussian centres are taken from, and their x (K) and y (28), one
@@ -80,8 +80,8 @@ impl Training {
         progress.begin("render, describe, sum", shown);
         for &block in &part.blocks {
             let numbers: Vec<usize> = scenes_of(block, part.scenes).collect();
-            let rule = self.orientation;
-            let described = describe_with(rig, scenes, &numbers, rule, &codebooks, progress)?;
+            let described =
+                describe_with(rig, scenes, &numbers, self.description(), &codebooks, progress)?;
             let (kept, x) = described_ones(&numbers, described);
             part.left_out += numbers.len() - kept.len();
             if kept.is_empty() {
@@ -102,7 +102,7 @@ impl Training {
     ) -> Result<Basis> {
         self.regressor.summed()?;
         let spaced = EvenlySpaced::new(scenes, Training::CODEBOOK_SCENES);
-        let described = describe_each(rig, &spaced, self.orientation, progress)?;
+        let described = describe_each(rig, &spaced, self.description(), progress)?;
         let (contexts, failed): (Vec<_>, Vec<_>) = described.into_iter().partition(Result::is_ok);
         let contexts: Vec<_> = contexts.into_iter().filter_map(Result::ok).collect();
         if contexts.len() < 2 {
@@ -117,7 +117,7 @@ impl Training {
         let mut basis = Basis {
             rig: rig.clone(),
             hand: hand.clone(),
-            orientation: self.orientation,
+            description: self.description(),
             regressor: self.regressor.clone(),
             codebooks,
             pilot: Vec::new(),
@@ -126,7 +126,8 @@ impl Training {
         };
         progress.begin("render and describe", pilot.len());
         let codebooks = [basis.codebooks()];
-        let described = describe_with(rig, scenes, &pilot, self.orientation, &codebooks, progress)?;
+        let described =
+            describe_with(rig, scenes, &pilot, self.description(), &codebooks, progress)?;
         let (kept, x) = described_ones(&pilot, described);
         let y = targets_of(scenes, &kept);
         basis.pilot_x = x.col_iter().flat_map(|column| column.iter().copied()).collect();
@@ -229,8 +230,8 @@ impl Part {
             return Err(Error::MissingPart { first: missing.start, last: missing.end - 1 });
         }
         let fit = self.basis.regressor.fit_sums(&self.basis.columns()?, &self.sums)?;
-        let Basis { rig, hand, orientation, codebooks, .. } = self.basis;
-        Estimator::from_parts(rig, hand, orientation, codebooks, fit.model)
+        let Basis { rig, hand, description, codebooks, .. } = self.basis;
+        Estimator::from_parts(rig, hand, description, codebooks, fit.model)
     }
 
     /// The part's file.

@@ -7,7 +7,10 @@ use phalanx_multiview::{Concatenation, Scratch, Vocabulary};
 use phalanx_rvm::{KernelRidge, Lambda, Width};
 use rayon::prelude::*;
 
-use crate::{Error, Estimator, OrientationRule, Progress, Regressor, Result, describe_poses};
+use crate::{
+    Description, Error, Estimator, Framing, OrientationRule, Progress, Regressor, Result,
+    describe_poses,
+};
 
 /// How an estimator is learnt. The default is the paper's descriptor, turned to the forearm's axis,
 /// with dense kernel regression.
@@ -19,6 +22,8 @@ use crate::{Error, Estimator, OrientationRule, Progress, Regressor, Result, desc
 pub struct Training {
     /// Which way shape contexts are turned.
     pub orientation: OrientationRule,
+    /// What of the pictures is described.
+    pub framing: Framing,
     /// The codebooks.
     pub vocabulary: Vocabulary,
     /// The regressor.
@@ -29,6 +34,7 @@ impl Default for Training {
     fn default() -> Self {
         Self {
             orientation: OrientationRule::default(),
+            framing: Framing::default(),
             vocabulary: Vocabulary::default(),
             regressor: Regressor::KernelRidge(KernelRidge {
                 width: Width::Scatter(0.5),
@@ -42,6 +48,11 @@ impl Training {
     /// Most scenes whose shape contexts codebooks are learnt from where scenes stream by, evenly
     /// spaced.
     pub const CODEBOOK_SCENES: usize = 1000;
+
+    /// How pictures are described.
+    pub(crate) fn description(&self) -> Description {
+        Description { orientation: self.orientation, framing: self.framing }
+    }
 
     /// Draws `poses` of the hand through the rig, describes them and learns an estimator. The
     /// same input gives the same estimator at any number of threads.
@@ -60,7 +71,7 @@ impl Training {
         if poses.len() < 2 {
             return Err(Error::TooFewPoses { found: poses.len() });
         }
-        let contexts = describe_poses(rig, hand, poses, self.orientation, progress)?;
+        let contexts = describe_poses(rig, hand, poses, self.description(), progress)?;
         progress.begin("cluster shape contexts", 1);
         let views = self.vocabulary.fit(&contexts, phalanx_shape_context::BINS)?;
         progress.step();
@@ -68,7 +79,7 @@ impl Training {
         progress.begin("fit the regressor", 1);
         let fit = self.regressor.fit(&x, &targets(poses))?;
         progress.step();
-        Estimator::from_parts(rig.clone(), hand.clone(), self.orientation, views, fit.model)
+        Estimator::from_parts(rig.clone(), hand.clone(), self.description(), views, fit.model)
     }
 }
 

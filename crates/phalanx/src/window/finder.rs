@@ -3,7 +3,7 @@
 use glam::DVec3;
 use image::GrayImage;
 use phalanx_camera::Camera;
-use phalanx_segmentation::{Cleanup, HandFinder, LocatedHand, Silhouette, WristModel};
+use phalanx_segmentation::{Cleanup, HandFinder, Silhouette, WristModel};
 
 use super::{Window, choice};
 use crate::{Describer, Error, Result};
@@ -44,20 +44,21 @@ impl WindowFinder {
         looks.iter().zip(chosen).map(|((camera, _), hand)| Window::onto(camera, &hand)).collect()
     }
 
-    /// The silhouette that the window of a camera of this number shows of the last hands found.
+    /// The silhouettes that the windows show of the hands that were found last.
     ///
     /// # Errors
-    /// No contour or no forearm, as [`phalanx_segmentation::Error`] names them.
-    pub fn silhouette(
+    /// One without contour or forearm, as [`phalanx_segmentation::Error`] names them.
+    pub fn silhouettes(
         &mut self,
-        view: usize,
-        window: &Window,
-        silhouette: &mut Silhouette,
+        windows: &[Window],
+        silhouettes: &mut [Silhouette],
     ) -> Result<()> {
-        let hand: &LocatedHand = &window.hand;
-        window.resample(&self.finders[view].isolate(hand), &mut self.seen);
-        self.describer
-            .silhouette_of_mask(&self.seen, silhouette)
-            .map_err(|reason| Error::Silhouette { camera: window.camera.name.clone(), reason })
+        for ((window, finder), silhouette) in windows.iter().zip(&self.finders).zip(silhouettes) {
+            window.resample(&finder.isolate(&window.hand), &mut self.seen);
+            self.describer.silhouette_of_mask(&self.seen, silhouette).map_err(|reason| {
+                Error::Silhouette { camera: window.camera.name.clone(), reason }
+            })?;
+        }
+        Ok(())
     }
 }
