@@ -126,13 +126,14 @@ pub enum Error {
         /// The point, px.
         point: DVec2,
     },
-    /// The distortion maps two directions to one pixel somewhere within the image.
-    #[error("camera `{camera}`: distortion folds over before it reaches the corner {corner} px")]
+    /// The distortion maps two directions to one pixel well within the image. That it does so in
+    /// the corners, where calibrations are extrapolated, is allowed; no direction is known there.
+    #[error("camera `{camera}`: distortion folds over before it reaches {pixel} px")]
     Folding {
         /// The camera.
         camera: String,
-        /// The image corner that it does not reach, px.
-        corner: DVec2,
+        /// The middle of a side of the image that it does not reach, px.
+        pixel: DVec2,
     },
     /// Neither, both or parts of the two ways to say where a camera stands.
     #[error(

@@ -15,6 +15,10 @@ const MAGIC: &str = "phalanx wrist model 1";
 /// Added to the variances of features: no silhouette is known more exactly.
 const VARIANCE_FLOOR: f64 = 1e-3;
 
+/// The logarithm of the density of anything that is no part of a hand and its arm as they were learnt:
+/// what is unlike both classes is elsewhere.
+const ANYTHING: f64 = 0.0;
+
 /// Mean and covariance at wrists, then elsewhere.
 type Parts = [(Features, [Features; FEATURES]); 2];
 
@@ -40,7 +44,7 @@ impl WristModel {
     /// How much more likely the features are at a wrist than elsewhere, as a logarithm.
     pub(crate) fn evidence(&self, features: &Features) -> f64 {
         let [wrist, elsewhere] = &self.classes;
-        wrist.log_density(features) - elsewhere.log_density(features)
+        wrist.log_density(features) - elsewhere.log_density(features).max(ANYTHING)
     }
 
     /// How far the features are from those of wrists: a squared Mahalanobis distance, about 11 on

@@ -47,7 +47,20 @@ fn panel(look: &Look) -> RgbImage {
         panels.push(imageops::resize(&photograph, width, HEIGHT, imageops::FilterType::Triangle));
         panels.extend(window);
     }
-    mosaic(&panels, panels.len() as u32, 2)
+    beside(&panels)
+}
+
+/// Pictures of one height in a row.
+fn beside(panels: &[RgbImage]) -> RgbImage {
+    const GAP: u32 = 2;
+    let width = panels.iter().map(|panel| panel.width() + GAP).sum::<u32>() - GAP;
+    let mut row = RgbImage::new(width, HEIGHT);
+    let mut x = 0;
+    for panel in panels {
+        imageops::replace(&mut row, panel, x, 0);
+        x += i64::from(panel.width() + GAP);
+    }
+    row
 }
 
 /// Colours the mask's border.
