@@ -7,6 +7,7 @@ mod described;
 mod experiments;
 mod files;
 mod fixtures;
+mod global_pose;
 mod headline;
 mod held_out;
 mod lab;
@@ -64,6 +65,9 @@ enum Command {
     /// Test on what was never seen: other motion, hands, cameras, silhouettes.
     #[command(name = "eval-held-out")]
     EvalHeldOut(held_out::Arguments),
+    /// Test where hands are found and how they are turned, anywhere in the volume.
+    #[command(name = "eval-global")]
+    EvalGlobal(global_pose::Arguments),
     /// Put one of the paper's figures or claims to the test.
     Experiment(experiments::Arguments),
     /// Run every experiment and write one page that a reader of the paper can follow.
@@ -111,6 +115,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::Merge(arguments) => merge::run(arguments)?,
         Command::EvalTable1(arguments) => table1::run(arguments)?,
         Command::EvalHeldOut(arguments) => return held_out::run(arguments),
+        Command::EvalGlobal(arguments) => global_pose::run(arguments)?,
         Command::Experiment(arguments) => experiments::run(arguments)?,
         Command::Report(arguments) => return report::run(arguments),
         Command::Headline(arguments) => headline::run(arguments)?,

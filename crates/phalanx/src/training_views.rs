@@ -143,13 +143,13 @@ impl SceneDescriber {
         Ok(self.silhouettes.iter())
     }
 
-    /// The scene's windows, in which its silhouettes are described, where they are.
+    /// The scene's masks, as large as they are drawn: damaged, and not cleaned.
     ///
     /// # Errors
-    /// Another number of views than cameras, or one in which no hand is found.
-    pub fn windows(&mut self, scene: &Scene) -> Result<Vec<Window>> {
+    /// Another number of views than cameras, or a hand that reaches behind one.
+    pub fn masks(&mut self, scene: &Scene) -> Result<&[GrayImage]> {
         self.draw(scene)?;
-        self.windows.find(&self.cameras, &self.drawn, None)
+        Ok(&self.drawn)
     }
 
     fn see(&mut self, scene: &Scene) -> Result<()> {

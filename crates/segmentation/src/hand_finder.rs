@@ -34,8 +34,8 @@ pub struct LocatedHand {
     /// How little it looks like a hand: the squared Mahalanobis distance of its sections from those
     /// of hands, about 11 for one.
     pub strangeness: f64,
-    /// Its component, for [`HandFinder::isolate`].
-    component: usize,
+    /// Which component of the mask it is, for [`HandFinder::isolate`].
+    pub component: usize,
 }
 
 /// Finds hands in masks, one after another in the same memory.

@@ -1,0 +1,143 @@
+//! `cargo xtask eval-global`: where hands are and how they are turned, anywhere in the volume.
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::Args;
+use phalanx::{
+    Estimate, Estimator, EvenlySpaced, Framing, Picture, Progress, SceneDescriber, Scenes, Shard,
+    Training, Workspace, initial_global,
+};
+use phalanx_camera::Rig;
+use phalanx_hand::{Dof, HandShape, Pose};
+use phalanx_segmentation::LocatedHand;
+
+use crate::held_out::method::nystrom;
+use crate::sets::{self, Set, Test};
+use crate::{files, progress};
+
+/// Hands that are learnt from, unless it is said how many.
+const SAMPLES: usize = 5000;
+/// Hands of the test that are looked at, evenly spaced.
+const TESTED: usize = 500;
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The rig, TOML; the desk of fixtures/ by default.
+    #[arg(long, value_name = "FILE.toml")]
+    rig: Option<PathBuf>,
+    /// How many hands are learnt from.
+    #[arg(long, value_name = "N", default_value_t = SAMPLES, value_parser = sets::samples)]
+    samples: usize,
+}
+
+/// What is wrong with one start.
+struct Errors {
+    position_mm: f64,
+    /// Of the arm's direction, and of the whole orientation.
+    arm_deg: f64,
+    orientation_deg: f64,
+    theta_z_deg: f64,
+    /// Mean over the 20 angles of the digits.
+    angles_deg: f64,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let (rig, hand) = (files::rig(arguments.rig.as_deref())?, files::hand(None)?);
+    let bar = progress::Bar::new();
+    let mut report = String::from(
+        "Mean, median and 95th percentile of what is wrong before refinement.\n\
+         views  found  position mm          arm deg              orientation deg      theta_z deg          digits deg\n",
+    );
+    for views in view_choices(&rig) {
+        let seen = rig.select(&views)?;
+        let estimator = learn(&seen, &hand, arguments.samples, &bar)?;
+        let test = Test::Placed.set(&seen, &hand, &[]);
+        report += &row(&estimator, &test, &bar)?;
+    }
+    drop(bar);
+    files::print(&report)
+}
+
+/// All cameras, the first two, and one alone.
+fn view_choices(rig: &Rig) -> Vec<Vec<String>> {
+    let names: Vec<String> = rig.cameras.iter().map(|camera| camera.name.clone()).collect();
+    let middle = names.len() / 2;
+    let mut choices = vec![names.clone()];
+    if names.len() > 2 {
+        choices.push(names[..2].to_vec());
+    }
+    if names.len() > 1 {
+        choices.push(vec![names[middle].clone()]);
+    }
+    choices
+}
+
+fn learn(
+    rig: &Rig,
+    hand: &HandShape,
+    samples: usize,
+    progress: &dyn Progress,
+) -> Result<Estimator> {
+    let training =
+        Training { framing: Framing::Window, regressor: nystrom(), ..Training::default() };
+    let set = sets::placed(rig, hand, samples);
+    Ok(training.shard(rig, hand, &set, Shard::WHOLE, progress)?.finish()?)
+}
+
+fn row(estimator: &Estimator, test: &Set<'_>, progress: &dyn Progress) -> Result<String> {
+    progress.begin("look for hands", TESTED);
+    let rig = estimator.rig();
+    let mut describer = SceneDescriber::new(rig, estimator.description())?;
+    let mut workspace = Workspace::default();
+    let mut errors = Vec::new();
+    let some = EvenlySpaced::new(test, TESTED);
+    for number in 0..some.count() {
+        let scene = some.scene(number);
+        let masks = describer.masks(&scene)?;
+        let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
+        if let Ok(estimate) = estimator.estimate(&pictures, &mut workspace) {
+            let start = start(estimator, &estimate, &workspace)?;
+            errors.push(Errors::of(&start, &scene.pose));
+        }
+        progress.step();
+    }
+    let column = |error: fn(&Errors) -> f64| {
+        let mut values: Vec<f64> = errors.iter().map(error).collect();
+        values.sort_by(f64::total_cmp);
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let at = |share: f64| values[(share * (values.len() - 1) as f64) as usize];
+        format!("  {mean:5.1} {:5.1} {:6.1}", at(0.5), at(0.95))
+    };
+    Ok(format!("{:5}  {:5}", rig.cameras.len(), errors.len())
+        + &column(|e| e.position_mm)
+        + &column(|e| e.arm_deg)
+        + &column(|e| e.orientation_deg)
+        + &column(|e| e.theta_z_deg)
+        + &column(|e| e.angles_deg)
+        + "\n")
+}
+
+fn start(estimator: &Estimator, estimate: &Estimate, workspace: &Workspace) -> Result<Pose> {
+    let hands: Vec<Option<LocatedHand>> =
+        workspace.windows().iter().map(|window| Some(window.hand)).collect();
+    let start = initial_global(estimator.rig(), estimator.hand(), &estimate.pose, &hands)?;
+    Ok(start.pose)
+}
+
+impl Errors {
+    fn of(found: &Pose, truth: &Pose) -> Self {
+        let turn = found.rotation().transpose() * truth.rotation();
+        let cosine = 0.5 * (turn.x_axis.x + turn.y_axis.y + turn.z_axis.z - 1.0);
+        let arms = found.rotation().z_axis.angle_between(truth.rotation().z_axis);
+        let off = |dof: Dof| (found[dof] - truth[dof]).abs().to_degrees();
+        let internal = Dof::ALL.into_iter().filter(|dof| dof.is_internal());
+        Self {
+            position_mm: found.translation().distance(truth.translation()),
+            arm_deg: arms.to_degrees(),
+            orientation_deg: cosine.clamp(-1.0, 1.0).acos().to_degrees(),
+            theta_z_deg: off(Dof::ThetaZ),
+            angles_deg: internal.map(off).sum::<f64>() / Dof::INTERNAL as f64,
+        }
+    }
+}
