@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::damage::make_ragged;
 use crate::{
     Describer, Description, Error, Framing, NominalScenes, Picture, Progress, Result, Scene,
-    Scenes, Window, WindowFinder, working_camera,
+    Scenes, WindowFinder, working_camera,
 };
 
 /// The shape contexts of one pose: for each camera, its contour points' histograms one after the

@@ -38,6 +38,17 @@ pub struct LocatedHand {
     pub component: usize,
 }
 
+/// The most wrists that are considered along one arm: the finger of a hand that points may look like
+/// a hand of its own.
+const WRISTS: usize = 3;
+
+/// A section that may be a wrist.
+struct Candidate {
+    section: usize,
+    evidence: f64,
+    strangeness: f64,
+}
+
 /// Finds hands in masks, one after another in the same memory.
 #[derive(Debug, Clone, Default)]
 pub struct HandFinder {
@@ -52,7 +63,8 @@ pub struct HandFinder {
 impl HandFinder {
     /// Everything in a mask of any size that may be a hand, the likeliest first: each component of
     /// at least [`Cleanup::min_hand`], with its arm coming from each place where it crosses the image
-    /// border or, where it crosses none, from either of its ends. Speckle is removed first.
+    /// border or, where it crosses none, from either of its ends, and with its wrist at each of the
+    /// few likeliest places along the arm. Speckle is removed first.
     ///
     /// # Errors
     /// Unusable `cleanup`, an image without pixels, or nothing as large as a hand.
@@ -66,7 +78,7 @@ impl HandFinder {
         for component in self.components_of(mask, cleanup)? {
             self.load(component);
             for source in self.arm_ends() {
-                hands.extend(self.hand_from(&source, component, model));
+                hands.extend(self.hands_from(&source, component, model));
             }
         }
         hands.sort_by(|a, b| a.strangeness.total_cmp(&b.strangeness));
@@ -141,34 +153,54 @@ impl HandFinder {
         vec![vec![one], vec![other]]
     }
 
-    /// The hand of the grid's component whose arm comes from some of its cells.
-    fn hand_from(
+    /// What may be the hand of the grid's component whose arm comes from some of its cells: the
+    /// likeliest wrists, at least a width apart.
+    fn hands_from(
         &mut self,
         source: &[usize],
         component: usize,
         model: &WristModel,
-    ) -> Option<LocatedHand> {
+    ) -> Vec<LocatedHand> {
         self.geodesic.measure(&self.grid, source);
         self.sections.fill(&self.grid, &self.geodesic);
         let sections = &self.sections;
-        let candidates = (0..sections.count()).filter_map(|section| {
-            let features = sections.features(section)?;
-            Some((section, model.evidence(&features), model.strangeness(&features)))
-        });
-        let (section, _, strangeness) = candidates.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let mut candidates: Vec<Candidate> = (0..sections.count())
+            .filter_map(|section| {
+                let features = sections.features(section)?;
+                let (evidence, strangeness) =
+                    (model.evidence(&features), model.strangeness(&features));
+                Some(Candidate { section, evidence, strangeness })
+            })
+            .collect();
+        candidates.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        let mut chosen: Vec<Candidate> = Vec::with_capacity(WRISTS);
+        for candidate in candidates {
+            let apart = |other: &Candidate| {
+                let width = sections.width(other.section).max(sections.width(candidate.section));
+                candidate.section.abs_diff(other.section) as f64 >= width
+            };
+            if chosen.len() < WRISTS && chosen.iter().all(apart) {
+                chosen.push(candidate);
+            }
+        }
+        chosen.iter().filter_map(|candidate| self.hand_at(candidate, component)).collect()
+    }
+
+    /// The hand ahead of a section.
+    fn hand_at(&self, candidate: &Candidate, component: usize) -> Option<LocatedHand> {
+        let section = candidate.section;
         let direction = self.direction(section)?;
-        let (wrist, scale) = (sections.centres[section], self.grid.scale as f64);
-        let width = sections.width(section);
+        let (wrist, scale) = (self.sections.centres[section], self.grid.scale as f64);
         let mut hand = LocatedHand {
             wrist,
             direction,
-            width: width * scale,
+            width: self.sections.width(section) * scale,
             length: 0.0,
             across: [0.0; 2],
             area: 0.0,
             arm: self.visible_arm(section) * scale,
             cut_off: false,
-            strangeness,
+            strangeness: candidate.strangeness,
             component,
         };
         let ahead = |&cell: &usize| {
@@ -185,7 +217,7 @@ impl HandFinder {
             hand.area += self.grid.area(cell);
             hand.cut_off |= self.grid.at_border[cell] && along > 0.5 * hand.width;
         }
-        Some(hand)
+        (hand.length > 0.0).then_some(hand)
     }
 
     /// The direction of the arm at a section: that in which the middles of the sections move, over

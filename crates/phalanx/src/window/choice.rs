@@ -5,7 +5,7 @@ use phalanx_camera::{Camera, Ray, triangulate};
 use phalanx_segmentation::LocatedHand;
 
 /// The most things that are considered in each view.
-const MOST: usize = 4;
+const MOST: usize = 6;
 
 /// How far a wrist's ray usually misses the wrist, mm.
 const MISS: f64 = 15.0;
