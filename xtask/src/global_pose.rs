@@ -88,7 +88,7 @@ fn learn(
 fn row(estimator: &Estimator, test: &Set<'_>, progress: &dyn Progress) -> Result<String> {
     progress.begin("look for hands", TESTED);
     let rig = estimator.rig();
-    let mut describer = SceneDescriber::new(rig, estimator.description())?;
+    let mut describer = SceneDescriber::new(rig, estimator.descriptor().sight())?;
     let mut workspace = Workspace::default();
     let mut errors = Vec::new();
     let some = EvenlySpaced::new(test, TESTED);

@@ -24,6 +24,7 @@ mod plate;
 mod postures;
 mod principal_axes;
 mod progress;
+mod refine_trial;
 mod report;
 mod saturation;
 mod scale;
@@ -86,6 +87,7 @@ enum Command {
     Headline(headline::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
     Pictures(pictures::Arguments),
+    RefineTrial(refine_trial::Arguments),
     /// Time every stage and write docs/performance.md.
     Performance(performance::Arguments),
 }
@@ -125,6 +127,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::ContactSheet(arguments) => contact_sheet::run(arguments)?,
         Command::TwoCamera(arguments) => two_camera::run(arguments)?,
         Command::Pictures(arguments) => pictures::run(arguments)?,
+        Command::RefineTrial(arguments) => refine_trial::run(arguments)?,
         Command::Performance(arguments) => performance::run(arguments)?,
     }
     Ok(ExitCode::SUCCESS)

@@ -1,9 +1,9 @@
 //! Working memory.
 
 /// Memory that describing one sample after another uses again.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Scratch {
-    pub(crate) voting: phalanx_codebook::Scratch,
+    pub(crate) coding: phalanx_codebook::Scratch,
     /// All views' shape contexts, one after the other.
     pub(crate) pool: Vec<f32>,
 }

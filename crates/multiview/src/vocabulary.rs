@@ -1,8 +1,8 @@
 //! How the codebooks of the views are learnt.
 
-use phalanx_codebook::{KMeans, Voting};
+use phalanx_codebook::{AnyCoding, Codebook, KMeans, Vlad, Voting};
 
-use crate::{Concatenation, Error, Pooled, Result};
+use crate::{Codes, Concatenation, Error, Pooled, Result};
 
 /// The codebooks to learn: the paper's 90 centres, shared as evenly as they go by the views, so that
 /// descriptors of one view and of three have the same length (§ 2); or all in one codebook, for
@@ -43,6 +43,31 @@ impl Vocabulary {
         S: AsRef<[V]>,
         V: AsRef<[f32]>,
     {
+        Concatenation::from_parts(self.codebooks(contexts, dim)?, self.voting)
+    }
+
+    /// Learns a codebook for each view, to code shape contexts by their residuals to its centres;
+    /// `contexts` as in [`fit`](Self::fit).
+    ///
+    /// # Errors
+    /// As of [`fit`](Self::fit).
+    pub fn fit_residuals<S, V>(&self, contexts: &[S], dim: usize) -> Result<Codes>
+    where
+        S: AsRef<[V]>,
+        V: AsRef<[f32]>,
+    {
+        let codebooks = self.codebooks(contexts, dim)?;
+        Codes::from_parts(
+            codebooks.into_iter().map(|codebook| AnyCoding::Vlad(Vlad { codebook })).collect(),
+        )
+    }
+
+    /// A codebook for each view.
+    fn codebooks<S, V>(&self, contexts: &[S], dim: usize) -> Result<Vec<Codebook>>
+    where
+        S: AsRef<[V]>,
+        V: AsRef<[f32]>,
+    {
         let views = check(contexts, dim)?;
         let codebooks = (0..views).map(|view| {
             let clustering = KMeans {
@@ -54,7 +79,7 @@ impl Vocabulary {
             let fit = clustering.fit(&evenly_spaced(of_view, dim, self.most_samples), dim);
             fit.map(|fit| fit.codebook).map_err(|reason| Error::View { view, reason })
         });
-        Concatenation::from_parts(codebooks.collect::<Result<_>>()?, self.voting)
+        codebooks.collect()
     }
 
     /// Learns one codebook, of all the centres, from all views together; `contexts` as in

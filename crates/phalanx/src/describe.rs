@@ -35,16 +35,16 @@ pub enum OrientationRule {
     ForearmAxis,
 }
 
-/// How pictures are described. Whoever asks for an [`OrientationRule`] alone gets whole pictures.
+/// How pictures are looked at. Whoever asks for an [`OrientationRule`] alone gets whole pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Description {
+pub struct Sight {
     /// Which way shape contexts are turned.
     pub orientation: OrientationRule,
     /// What of the pictures is described.
     pub framing: Framing,
 }
 
-impl From<OrientationRule> for Description {
+impl From<OrientationRule> for Sight {
     fn from(orientation: OrientationRule) -> Self {
         Self { orientation, framing: Framing::default() }
     }

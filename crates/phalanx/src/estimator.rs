@@ -4,12 +4,11 @@ use glam::DVec3;
 use image::GrayImage;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
-use phalanx_multiview::Concatenation;
-use phalanx_rvm::Model;
 use phalanx_segmentation::{Forearm, Silhouette};
 
 use crate::{
-    Describer, Description, Error, Framing, OrientationRule, Picture, Result, Window, WindowFinder,
+    Descriptor, Error, Framing, OrientationRule, Picture, Regression, Result, Window, WindowFinder,
+    descriptor,
 };
 
 /// A pose estimator for one rig and one hand; see [`Training`](crate::Training) for how to get
@@ -18,9 +17,8 @@ use crate::{
 pub struct Estimator {
     rig: Rig,
     hand: HandShape,
-    description: Description,
-    views: Concatenation,
-    model: Model,
+    descriptor: Descriptor,
+    regression: Regression,
 }
 
 /// What is known of a hand after looking at it.
@@ -47,10 +45,8 @@ pub struct Workspace {
 /// What a [`Workspace`] keeps besides the silhouettes.
 #[derive(Debug, Default)]
 struct Memory {
-    describer: Describer,
     windows: WindowFinder,
-    contexts: Vec<Vec<f32>>,
-    views: phalanx_multiview::Scratch,
+    description: descriptor::Memory,
     x: Vec<f64>,
     regression: phalanx_rvm::Scratch,
 }
@@ -62,8 +58,8 @@ impl Workspace {
         &self.silhouettes
     }
 
-    /// The windows that the last silhouettes are seen in, where the estimator describes windows; of
-    /// no meaning if it failed.
+    /// The windows that the last silhouettes are seen in, where the estimator looks through windows;
+    /// of no meaning if it failed.
     pub fn windows(&self) -> &[Window] {
         &self.windows
     }
@@ -77,28 +73,22 @@ impl Estimator {
     pub fn from_parts(
         rig: Rig,
         hand: HandShape,
-        description: impl Into<Description>,
-        views: Concatenation,
-        model: Model,
+        descriptor: Descriptor,
+        regression: impl Into<Regression>,
     ) -> Result<Self> {
         rig.validate()?;
         hand.validate()?;
+        descriptor.check(&rig)?;
+        let regression = regression.into();
         for (part, found, expected) in [
-            ("codebooks", views.views(), rig.cameras.len()),
-            ("regressor inputs", model.inputs(), views.dim()),
-            ("regressor outputs", model.outputs(), Dof::COUNT),
+            ("regressor inputs", regression.inputs(), descriptor.dim()),
+            ("regressor outputs", regression.outputs(), Dof::COUNT),
         ] {
             if found != expected {
                 return Err(Error::Mismatch { part, found, expected });
             }
         }
-        for (camera, codebook) in rig.cameras.iter().zip(views.codebooks()) {
-            let (found, expected) = (codebook.dim(), phalanx_shape_context::BINS);
-            if found != expected {
-                return Err(Error::CodebookBins { camera: camera.name.clone(), found, expected });
-            }
-        }
-        Ok(Self { rig, hand, description: description.into(), views, model })
+        Ok(Self { rig, hand, descriptor, regression })
     }
 
     /// The cameras and the volume it was learnt for.
@@ -111,24 +101,19 @@ impl Estimator {
         &self.hand
     }
 
+    /// What it reads of the silhouettes.
+    pub fn descriptor(&self) -> &Descriptor {
+        &self.descriptor
+    }
+
     /// Which way its shape contexts are turned.
     pub fn orientation(&self) -> OrientationRule {
-        self.description.orientation
-    }
-
-    /// How pictures are described.
-    pub fn description(&self) -> Description {
-        self.description
-    }
-
-    /// Its codebooks.
-    pub fn views(&self) -> &Concatenation {
-        &self.views
+        self.descriptor.orientation()
     }
 
     /// Its regressor.
-    pub fn model(&self) -> &Model {
-        &self.model
+    pub fn regression(&self) -> &Regression {
+        &self.regression
     }
 
     /// Estimates the pose from one picture per camera, in the order of the rig's cameras.
@@ -148,8 +133,8 @@ impl Estimator {
         let Workspace { silhouettes, windows, memory } = workspace;
         silhouettes.resize_with(pictures.len(), Silhouette::default);
         windows.clear();
-        match self.description.framing {
-            Framing::Picture => self.see_whole(pictures, silhouettes, &mut memory.describer)?,
+        match self.descriptor.sight().framing {
+            Framing::Picture => self.see_whole(pictures, silhouettes, memory)?,
             Framing::Window => {
                 let masks = self.masks(pictures)?;
                 *windows = memory.windows.find(&self.rig.cameras, &masks, None)?;
@@ -164,10 +149,12 @@ impl Estimator {
         &self,
         pictures: &[Picture<'_>],
         silhouettes: &mut [Silhouette],
-        describer: &mut Describer,
+        memory: &mut Memory,
     ) -> Result<()> {
         for ((view, &picture), silhouette) in pictures.iter().enumerate().zip(silhouettes) {
-            describer
+            memory
+                .description
+                .describer
                 .silhouette(picture, silhouette)
                 .map_err(|reason| Error::Silhouette { camera: self.camera(view), reason })?;
         }
@@ -198,15 +185,8 @@ impl Estimator {
 
     /// The estimate from one silhouette per camera.
     fn look_at(&self, silhouettes: &[Silhouette], memory: &mut Memory) -> Result<Estimate> {
-        let Memory { describer, contexts, .. } = memory;
-        contexts.resize_with(silhouettes.len(), Vec::new);
-        for ((view, silhouette), kept) in silhouettes.iter().enumerate().zip(contexts) {
-            let contexts = describer
-                .contexts(silhouette, self.orientation())
-                .map_err(|reason| Error::ShapeContext { camera: self.camera(view), reason })?;
-            kept.clear();
-            kept.extend_from_slice(contexts.values());
-        }
+        let Memory { description, x, .. } = memory;
+        self.descriptor.describe(&self.rig, silhouettes.iter(), description, x)?;
         let (pose, std) = self.regress(memory)?;
         let joints = self.hand.pose(&pose, &self.rig.volume.rest_frame()).joints;
         let forearms = silhouettes.iter().map(|silhouette| silhouette.forearm).collect();
@@ -237,11 +217,9 @@ impl Estimator {
     }
 
     fn regress(&self, memory: &mut Memory) -> Result<(Pose, [f64; Dof::COUNT])> {
-        let Memory { contexts, views, x, regression, .. } = memory;
-        x.resize(self.views.dim(), 0.0);
-        self.views.describe(contexts, views, x)?;
+        let Memory { x, regression, .. } = memory;
         let (mut pose, mut std) = (Pose::REST, [0.0; Dof::COUNT]);
-        self.model.predict_into(x, regression, &mut pose.0, &mut std)?;
+        self.regression.predict_into(x, regression, &mut pose.0, &mut std)?;
         for dof in Dof::ALL {
             let numbers = [pose[dof], std[dof.index()]];
             if let Some(&value) = numbers.iter().find(|number| !number.is_finite()) {

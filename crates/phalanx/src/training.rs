@@ -3,13 +3,13 @@
 use faer::Mat;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
-use phalanx_multiview::{Concatenation, Scratch, Vocabulary};
+use phalanx_multiview::{Codes, Concatenation, Scratch, Vocabulary};
 use phalanx_rvm::{KernelRidge, Lambda, Width};
 use rayon::prelude::*;
 
 use crate::{
-    Description, Error, Estimator, Framing, OrientationRule, Progress, Regressor, Result,
-    describe_poses,
+    Beside, Descriptor, Error, Estimator, Framing, NominalScenes, OrientationRule, PoseContexts,
+    Progress, Regressor, Result, Shard, Sight, describe_poses,
 };
 
 /// How an estimator is learnt. The default is the paper's descriptor, turned to the forearm's axis,
@@ -22,12 +22,24 @@ use crate::{
 pub struct Training {
     /// Which way shape contexts are turned.
     pub orientation: OrientationRule,
-    /// What of the pictures is described.
+    /// What of the pictures is looked at.
     pub framing: Framing,
     /// The codebooks.
     pub vocabulary: Vocabulary,
+    /// What is described with them.
+    pub description: Description,
     /// The regressor.
     pub regressor: Regressor,
+}
+
+/// What of the silhouettes is described.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Description {
+    /// Soft counts of the shape contexts, the paper's.
+    Counts,
+    /// Residuals of the shape contexts to the nearest centres, and beside them the hand's coverage
+    /// of a coarse grid.
+    Residuals,
 }
 
 impl Default for Training {
@@ -36,6 +48,7 @@ impl Default for Training {
             orientation: OrientationRule::default(),
             framing: Framing::default(),
             vocabulary: Vocabulary::default(),
+            description: Description::Counts,
             regressor: Regressor::KernelRidge(KernelRidge {
                 width: Width::Scatter(0.5),
                 lambda: Lambda::Given(0.01),
@@ -48,11 +61,6 @@ impl Training {
     /// Most scenes whose shape contexts codebooks are learnt from where scenes stream by, evenly
     /// spaced.
     pub const CODEBOOK_SCENES: usize = 1000;
-
-    /// How pictures are described.
-    pub(crate) fn description(&self) -> Description {
-        Description { orientation: self.orientation, framing: self.framing }
-    }
 
     /// Draws `poses` of the hand through the rig, describes them and learns an estimator. The
     /// same input gives the same estimator at any number of threads.
@@ -71,7 +79,13 @@ impl Training {
         if poses.len() < 2 {
             return Err(Error::TooFewPoses { found: poses.len() });
         }
-        let contexts = describe_poses(rig, hand, poses, self.description(), progress)?;
+        if self.description != Description::Counts
+            || matches!(self.regressor, Regressor::LearntMetric(_))
+        {
+            let scenes = NominalScenes { rig, hand, poses };
+            return self.shard(rig, hand, &scenes, Shard::WHOLE, progress)?.finish();
+        }
+        let contexts = describe_poses(rig, hand, poses, self.sight(), progress)?;
         progress.begin("cluster shape contexts", 1);
         let views = self.vocabulary.fit(&contexts, phalanx_shape_context::BINS)?;
         progress.step();
@@ -79,7 +93,27 @@ impl Training {
         progress.begin("fit the regressor", 1);
         let fit = self.regressor.fit(&x, &targets(poses))?;
         progress.step();
-        Estimator::from_parts(rig.clone(), hand.clone(), self.description(), views, fit.model)
+        let descriptor = Descriptor::new(self.sight(), views, Beside::Nothing);
+        Estimator::from_parts(rig.clone(), hand.clone(), descriptor, fit.model)
+    }
+
+    /// How pictures are looked at.
+    pub(crate) fn sight(&self) -> Sight {
+        Sight { orientation: self.orientation, framing: self.framing }
+    }
+
+    /// The descriptor, with codebooks learnt from shape contexts.
+    pub(crate) fn descriptor(&self, contexts: &[PoseContexts]) -> Result<Descriptor> {
+        let (bins, sight) = (phalanx_shape_context::BINS, self.sight());
+        Ok(match self.description {
+            Description::Counts => {
+                Descriptor::new(sight, self.vocabulary.fit(contexts, bins)?, Beside::Nothing)
+            }
+            Description::Residuals => {
+                let codes: Codes = self.vocabulary.fit_residuals(contexts, bins)?;
+                Descriptor::new(sight, codes, Beside::Coverage)
+            }
+        })
     }
 }
 

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use crate::damage::make_ragged;
 use crate::{
-    Describer, Description, Error, Framing, NominalScenes, Picture, Progress, Result, Scene,
-    Scenes, WindowFinder, working_camera,
+    Describer, Error, Framing, NominalScenes, Picture, Progress, Result, Scene, Scenes,
+    WindowFinder, working_camera,
 };
 
 /// The shape contexts of one pose: for each camera, its contour points' histograms one after the
@@ -27,11 +27,11 @@ pub fn describe_poses(
     rig: &Rig,
     hand: &HandShape,
     poses: &[Pose],
-    description: impl Into<Description>,
+    sight: impl Into<Sight>,
     progress: &dyn Progress,
 ) -> Result<Vec<PoseContexts>> {
     let scenes = NominalScenes { rig, hand, poses };
-    describe_each(rig, &scenes, description, progress)?.into_iter().collect()
+    describe_each(rig, &scenes, sight, progress)?.into_iter().collect()
 }
 
 /// Draws scenes through every camera of a rig and describes the silhouettes, in parallel; the
@@ -42,10 +42,10 @@ pub fn describe_poses(
 pub fn describe_each(
     rig: &Rig,
     scenes: &dyn Scenes,
-    description: impl Into<Description>,
+    sight: impl Into<Sight>,
     progress: &dyn Progress,
 ) -> Result<Vec<Result<PoseContexts>>> {
-    let describer = SceneDescriber::new(rig, description)?;
+    let describer = SceneDescriber::new(rig, sight)?;
     progress.begin("render and describe", scenes.count());
     let describe = |describer: &mut SceneDescriber, pose: usize| {
         let contexts = describer.contexts(&scenes.scene(pose));
@@ -76,7 +76,7 @@ pub fn draw_silhouette(
 /// Draws scenes and describes their silhouettes, one after another in the same memory.
 #[derive(Debug, Clone)]
 pub struct SceneDescriber {
-    description: Description,
+    sight: Sight,
     cameras: Vec<Camera>,
     renderers: Vec<Renderer>,
     drawn: Vec<GrayImage>,
@@ -91,9 +91,9 @@ impl SceneDescriber {
     ///
     /// # Errors
     /// A camera that cannot draw.
-    pub fn new(rig: &Rig, description: impl Into<Description>) -> Result<Self> {
-        let description = description.into();
-        let drawing = |camera: &Camera| match description.framing {
+    pub fn new(rig: &Rig, sight: impl Into<Sight>) -> Result<Self> {
+        let sight = sight.into();
+        let drawing = |camera: &Camera| match sight.framing {
             Framing::Picture => working_camera(camera),
             Framing::Window => Ok(camera.clone()),
         };
@@ -103,7 +103,7 @@ impl SceneDescriber {
                 .map_err(|reason| Error::Render { camera: camera.name.clone(), reason })
         };
         Ok(Self {
-            description,
+            sight,
             renderers: cameras.iter().map(renderer).collect::<Result<_>>()?,
             drawn: vec![GrayImage::default(); cameras.len()],
             describer: Describer::default(),
@@ -119,7 +119,7 @@ impl SceneDescriber {
     /// Another number of views than cameras, or one that cannot be seen or described.
     pub fn contexts(&mut self, scene: &Scene) -> Result<PoseContexts> {
         self.see(scene)?;
-        let rule = self.description.orientation;
+        let rule = self.sight.orientation;
         let mut contexts = Vec::with_capacity(self.cameras.len());
         for (camera, silhouette) in self.cameras.iter().zip(&self.silhouettes) {
             let described = self
@@ -140,7 +140,12 @@ impl SceneDescriber {
         scene: &Scene,
     ) -> Result<impl Iterator<Item = &'a Silhouette> + use<'a>> {
         self.see(scene)?;
-        Ok(self.silhouettes.iter())
+        Ok(self.seen())
+    }
+
+    /// The silhouettes of the scene last seen.
+    pub(crate) fn seen(&self) -> impl Iterator<Item = &Silhouette> + Clone {
+        self.silhouettes.iter()
     }
 
     /// The scene's masks, as large as they are drawn: damaged, and not cleaned.
@@ -152,9 +157,9 @@ impl SceneDescriber {
         Ok(&self.drawn)
     }
 
-    fn see(&mut self, scene: &Scene) -> Result<()> {
+    pub(crate) fn see(&mut self, scene: &Scene) -> Result<()> {
         self.draw(scene)?;
-        match self.description.framing {
+        match self.sight.framing {
             Framing::Picture => {
                 let views = self.cameras.iter().zip(&self.drawn).zip(&mut self.silhouettes);
                 for ((camera, drawn), silhouette) in views {

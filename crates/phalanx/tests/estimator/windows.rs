@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 use image::{GrayImage, Luma};
 use phalanx::{
-    Description, Framing, OrientationRule, Picture, Scene, SceneDescriber, Training, Window,
+    Framing, OrientationRule, Picture, Scene, SceneDescriber, Sight, Training, Window,
     WindowFinder, Workspace, initial_global,
 };
 use phalanx_camera::{Camera, Distortion, Intrinsics, Rig};
@@ -15,8 +15,8 @@ use proptest::prelude::*;
 
 use crate::desk::{closing, poses, rig, training, unseen};
 
-const THROUGH_WINDOWS: Description =
-    Description { orientation: OrientationRule::ForearmAxis, framing: Framing::Window };
+const THROUGH_WINDOWS: Sight =
+    Sight { orientation: OrientationRule::ForearmAxis, framing: Framing::Window };
 
 /// The mask of a posed hand as a camera of any size sees it.
 fn mask(camera: &Camera, pose: &Pose) -> GrayImage {
@@ -85,7 +85,7 @@ fn training_and_use_see_the_same() {
     let estimator = training.run(&rig, &hand, &poses(), &phalanx::Silent).unwrap();
     let read = phalanx::Estimator::from_bytes(&estimator.to_bytes().unwrap()).unwrap();
     assert_eq!(read, estimator);
-    assert_eq!(read.description(), THROUGH_WINDOWS);
+    assert_eq!(read.descriptor().sight(), THROUGH_WINDOWS);
     let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
     let (mut workspace, mut worst) = (Workspace::default(), 0.0_f64);
     for pose in unseen() {
