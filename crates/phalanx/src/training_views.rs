@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use crate::damage::make_ragged;
 use crate::{
-    Describer, Error, Framing, NominalScenes, Picture, Progress, Result, Scene, Scenes,
+    Describer, Error, Framing, NominalScenes, Picture, Progress, Result, Scene, Scenes, Sight,
     WindowFinder, working_camera,
 };
 

@@ -80,8 +80,8 @@ fn wrists_are_found_however_the_arm_ends() {
         assert!(hand.arm < 0.3 * arm, "{hand:?}");
     }
     // Bent at the elbow, and leaving by a side.
-    let bent = Drawn { elbow: 100.0, ..UPRIGHT };
-    bent.check(&bent.mask(120, 120));
+    let bent = Drawn { elbow: 230.0, ..UPRIGHT };
+    bent.check(&bent.mask(140, 160));
     // Through a corner, by two borders: both crossings are of the arm.
     let diagonal = Drawn { wrist: [45.0, 75.0], angle: -std::f64::consts::FRAC_PI_4, ..UPRIGHT };
     diagonal.check(&diagonal.mask(120, 120));
@@ -117,7 +117,9 @@ fn nothing_to_find_is_an_error() {
     };
     assert!(matches!(find(&GrayImage::new(0, 5)), Err(Error::ImageTooSmall { .. })));
     assert!(matches!(find(&GrayImage::new(50, 50)), Err(Error::EmptyMask { .. })));
-    let line = GrayImage::from_fn(50, 50, |_, y| Luma([if y < 2 { 255 } else { 0 }]));
+    let line = GrayImage::from_fn(50, 50, |x, y| {
+        Luma([if (20..22).contains(&y) && (10..40).contains(&x) { 255 } else { 0 }])
+    });
     assert_eq!(find(&line), Err(Error::NoHand));
     assert!(matches!(WristTrainer::default().finish(), Err(Error::TooFewWrists { .. })));
 }

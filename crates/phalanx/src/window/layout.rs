@@ -17,9 +17,9 @@ const LEAST_ARM: f64 = 20.0;
 
 /// The virtual camera that looks at a hand.
 pub(super) fn camera(camera: &Camera, hand: &LocatedHand) -> Result<Camera> {
-    let sight = Sight { camera, hand };
+    let view = View { camera, hand };
     let (width, height) = (f64::from(WORKING_SIZE.0), f64::from(WORKING_SIZE.1));
-    let [along, across] = sight.angles_per_pixel()?;
+    let [along, across] = view.angles_per_pixel()?;
     let broad = hand.across[1] - hand.across[0];
     let filled = (FILL * width * height / (hand.area * along * across)).sqrt();
     let long = (width - MARGIN - LEAST_ARM) / (along * hand.length);
@@ -30,8 +30,8 @@ pub(super) fn camera(camera: &Camera, hand: &LocatedHand) -> Result<Camera> {
     let wrist = hand.length.min(hand.arm).min((width - MARGIN) / scale - hand.length);
     let ahead = 0.5 * width / scale - wrist;
     let middle = f64::midpoint(hand.across[0], hand.across[1]);
-    let aim = sight.direction(ahead, middle)?;
-    let right = sight.direction(ahead + 1.0, middle)? - aim;
+    let aim = view.direction(ahead, middle)?;
+    let right = view.direction(ahead + 1.0, middle)? - aim;
     let inside = Intrinsics::pinhole(WORKING_SIZE.0, WORKING_SIZE.1, focal);
     let turned = camera.turned(aim, right, inside)?;
     turned.validate()?;
@@ -39,12 +39,12 @@ pub(super) fn camera(camera: &Camera, hand: &LocatedHand) -> Result<Camera> {
 }
 
 /// A hand as a camera sees it.
-struct Sight<'a> {
+struct View<'a> {
     camera: &'a Camera,
     hand: &'a LocatedHand,
 }
 
-impl Sight<'_> {
+impl View<'_> {
     /// The direction in the world, a unit vector, of what is so many pixels ahead of the wrist along
     /// the arm and so many to the side.
     fn direction(&self, ahead: f64, side: f64) -> Result<DVec3> {
