@@ -5,12 +5,14 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 use phalanx::{
-    Estimate, Estimator, EvenlySpaced, Framing, Picture, Progress, SceneDescriber, Scenes, Shard,
-    Training, Workspace, initial_global,
+    Estimate, Estimator, EvenlySpaced, Framing, Picture, Progress, Refiner, SceneDescriber, Scenes,
+    Shard, Training, Window, Workspace, initial_global,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
+use phalanx_refine::{Evidence, Refinement};
 use phalanx_segmentation::LocatedHand;
+use rayon::prelude::*;
 
 use crate::held_out::method::nystrom;
 use crate::sets::{self, Set, Test};
@@ -20,6 +22,11 @@ use crate::{files, progress};
 const SAMPLES: usize = 5000;
 /// Hands of the test that are looked at, evenly spaced.
 const TESTED: usize = 500;
+
+/// How far off a start usually is: the arm's direction in each of θ_X and θ_Y, the wrist along each
+/// axis.
+const LEAN_STD_DEG: f64 = 6.0;
+const POSITION_STD_MM: f64 = 8.0;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -46,14 +53,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let (rig, hand) = (files::rig(arguments.rig.as_deref())?, files::hand(None)?);
     let bar = progress::Bar::new();
     let mut report = String::from(
-        "Mean, median and 95th percentile of what is wrong before refinement.\n\
-         views  found  position mm          arm deg              orientation deg      theta_z deg          digits deg\n",
+        "Mean, median and 95th percentile of what is wrong before refinement and after.\n\
+         views           found  position mm          arm deg              orientation deg      theta_z deg          digits deg\n",
     );
     for views in view_choices(&rig) {
         let seen = rig.select(&views)?;
-        let estimator = learn(&seen, &hand, arguments.samples, &bar)?;
+        let learnt = learn(&seen, &hand, arguments.samples, &bar)?;
         let test = Test::Placed.set(&seen, &hand, &[]);
-        report += &row(&estimator, &test, &bar)?;
+        report += &rows(&learnt, &test, &bar)?;
     }
     drop(bar);
     files::print(&report)
@@ -73,56 +80,98 @@ fn view_choices(rig: &Rig) -> Vec<Vec<String>> {
     choices
 }
 
+/// An estimator for hands anywhere, and what refines its estimates.
 fn learn(
     rig: &Rig,
     hand: &HandShape,
     samples: usize,
     progress: &dyn Progress,
-) -> Result<Estimator> {
+) -> Result<(Estimator, Refiner)> {
     let training =
         Training { framing: Framing::Window, regressor: nystrom(), ..Training::default() };
     let set = sets::placed(rig, hand, samples);
-    Ok(training.shard(rig, hand, &set, Shard::WHOLE, progress)?.finish()?)
+    let estimator = training.shard(rig, hand, &set, Shard::WHOLE, progress)?.finish()?;
+    Ok((estimator, Refiner::new(rig, hand, &set.poses, Refinement::default())?))
 }
 
-fn row(estimator: &Estimator, test: &Set<'_>, progress: &dyn Progress) -> Result<String> {
+fn rows(
+    (estimator, refiner): &(Estimator, Refiner),
+    test: &Set<'_>,
+    progress: &dyn Progress,
+) -> Result<String> {
     progress.begin("look for hands", TESTED);
     let rig = estimator.rig();
-    let mut describer = SceneDescriber::new(rig, estimator.descriptor().sight())?;
-    let mut workspace = Workspace::default();
-    let mut errors = Vec::new();
+    let describer = SceneDescriber::new(rig, estimator.descriptor().sight())?;
     let some = EvenlySpaced::new(test, TESTED);
-    for number in 0..some.count() {
-        let scene = some.scene(number);
-        let masks = describer.masks(&scene)?;
-        let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
-        if let Ok(estimate) = estimator.estimate(&pictures, &mut workspace) {
-            let start = start(estimator, &estimate, &workspace)?;
-            errors.push(Errors::of(&start, &scene.pose));
-        }
-        progress.step();
-    }
-    let column = |error: fn(&Errors) -> f64| {
-        let mut values: Vec<f64> = errors.iter().map(error).collect();
-        values.sort_by(f64::total_cmp);
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let at = |share: f64| values[(share * (values.len() - 1) as f64) as usize];
-        format!("  {mean:5.1} {:5.1} {:6.1}", at(0.5), at(0.95))
+    let looks: Vec<Option<[Errors; 2]>> = (0..some.count())
+        .into_par_iter()
+        .map_init(
+            || (describer.clone(), Workspace::default()),
+            |(describer, workspace), number| -> Result<_> {
+                let scene = some.scene(number);
+                let masks = describer.masks(&scene)?;
+                let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
+                let found = match estimator.estimate(&pictures, workspace) {
+                    Ok(estimate) => {
+                        let start = start(estimator, &estimate, workspace.windows())?;
+                        let refined = refine(refiner, &start, workspace)?;
+                        let of = |pose: &Pose| Errors::of(pose, &scene.pose);
+                        Some([of(&start.pose), of(&refined)])
+                    }
+                    Err(_) => None,
+                };
+                progress.step();
+                Ok(found)
+            },
+        )
+        .collect::<Result<_>>()?;
+    let found: Vec<&[Errors; 2]> = looks.iter().flatten().collect();
+    let row = |k: usize, what: &str| {
+        let column = |error: fn(&Errors) -> f64| {
+            let mut values: Vec<f64> = found.iter().map(|both| error(&both[k])).collect();
+            values.sort_by(f64::total_cmp);
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            let at = |share: f64| values[(share * (values.len() - 1) as f64) as usize];
+            format!("  {mean:5.1} {:5.1} {:6.1}", at(0.5), at(0.95))
+        };
+        format!("{:5}  {what:7}  {:5}", rig.cameras.len(), found.len())
+            + &column(|e| e.position_mm)
+            + &column(|e| e.arm_deg)
+            + &column(|e| e.orientation_deg)
+            + &column(|e| e.theta_z_deg)
+            + &column(|e| e.angles_deg)
+            + "\n"
     };
-    Ok(format!("{:5}  {:5}", rig.cameras.len(), errors.len())
-        + &column(|e| e.position_mm)
-        + &column(|e| e.arm_deg)
-        + &column(|e| e.orientation_deg)
-        + &column(|e| e.theta_z_deg)
-        + &column(|e| e.angles_deg)
-        + "\n")
+    Ok(row(0, "start") + &row(1, "refined"))
 }
 
-fn start(estimator: &Estimator, estimate: &Estimate, workspace: &Workspace) -> Result<Pose> {
-    let hands: Vec<Option<LocatedHand>> =
-        workspace.windows().iter().map(|window| Some(window.hand)).collect();
+/// An estimate with its global pose found from the windows.
+pub(crate) fn start(
+    estimator: &Estimator,
+    estimate: &Estimate,
+    windows: &[Window],
+) -> Result<Estimate> {
+    let hands: Vec<Option<LocatedHand>> = windows.iter().map(|window| Some(window.hand)).collect();
     let start = initial_global(estimator.rig(), estimator.hand(), &estimate.pose, &hands)?;
-    Ok(start.pose)
+    let mut std = estimate.std;
+    for dof in [Dof::ThetaX, Dof::ThetaY] {
+        std[dof.index()] = LEAN_STD_DEG.to_radians();
+    }
+    for dof in [Dof::TX, Dof::TY, Dof::TZ] {
+        std[dof.index()] = POSITION_STD_MM;
+    }
+    Ok(Estimate { pose: start.pose, std, ..estimate.clone() })
+}
+
+/// The pose refined through the windows.
+fn refine(refiner: &Refiner, start: &Estimate, workspace: &Workspace) -> Result<Pose> {
+    let pairs = workspace.windows().iter().zip(workspace.silhouettes());
+    let evidence: Vec<Evidence> =
+        pairs.map(|(window, seen)| window.evidence(seen)).collect::<Result<_, _>>()?;
+    let prior = refiner.prior(&start.pose, &start.std)?;
+    let refinement = Refinement::default();
+    let (hand, rest) = (refiner.hand(), refiner.rest());
+    Ok(refinement.run(hand, rest, &evidence, prior.mean(), &prior)?.pose)
 }
 
 impl Errors {

@@ -73,6 +73,10 @@ pub(crate) fn clean<'a>(
 /// How far the arm of [`placed`] hands leans in θ_X and in θ_Y, degrees.
 const LEAN_DEG: f64 = 30.0;
 
+/// How far the wrists of [`loosely_placed`] hands bend, degrees.
+const WRIST_DEG: [(Dof, [f64; 2]); 2] =
+    [(Dof::WristFlexion, [-30.0, 50.0]), (Dof::WristDeviation, [-25.0, 15.0])];
+
 /// A coupled pose with its wrist anywhere in the working volume, its arm leaning in θ_X and θ_Y.
 fn placed_pose(random: &mut ItemRandom, size_mm: DVec3) -> Pose {
     let mut pose = coupled_pose(|| random.uniform());
@@ -91,6 +95,20 @@ pub(crate) fn placed<'a>(rig: &'a Rig, hand: &'a HandShape, samples: usize) -> S
     let size = rig.volume.size;
     let poses = independent(samples, TRAIN_POSES, |random| placed_pose(random, size));
     Set { name: "placed", poses, ..random(rig, hand, 1, Augment::Yes) }
+}
+
+/// The same with wrists that bend, as those of people who are not told to keep them straight.
+pub(crate) fn loosely_placed<'a>(rig: &'a Rig, hand: &'a HandShape, samples: usize) -> Set<'a> {
+    let size = rig.volume.size;
+    let bent = |random: &mut ItemRandom| {
+        let mut pose = placed_pose(random, size);
+        for (dof, [low, high]) in WRIST_DEG {
+            pose[dof] = random.between(low, high).to_radians();
+        }
+        pose
+    };
+    let poses = independent(samples, TRAIN_POSES, bent);
+    Set { name: "loosely_placed", poses, ..random(rig, hand, 1, Augment::Yes) }
 }
 
 /// Independent poses from the coupled prior to learn from, θ_Z uniform in 0° … 90°. A larger set

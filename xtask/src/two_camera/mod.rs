@@ -1,23 +1,30 @@
 //! `cargo xtask two-camera`: a real hand before two calibrated webcams.
 
+mod angles;
+mod fit;
 mod frames;
 mod sheet;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
 use glam::DVec3;
 use image::{GrayImage, RgbImage};
-use phalanx::{Window, WindowFinder};
+use phalanx::{Progress, Window, WindowFinder, Workspace};
 use phalanx_camera::{Rig, Volume, cameras_from_opencv_json, triangulate};
+use phalanx_hand::Pose;
 use phalanx_segmentation::{Silhouette, SkinModel};
 
-use crate::files;
+use crate::{files, progress, sets};
 use frames::Frame;
 
 /// The squares of the chessboard that the cameras were calibrated with, mm.
 const SQUARE_MM: f64 = 50.0;
+/// Hands that are learnt from, unless it is said how many.
+const SAMPLES: usize = 5000;
+/// Overlap that is asked for in every view.
+const GOAL: f64 = 0.88;
 /// Side of the cube in which the wrist moves, mm.
 const VOLUME_MM: f64 = 400.0;
 
@@ -26,6 +33,12 @@ pub(crate) struct Arguments {
     /// The folder of data; its `two-camera/` is read.
     #[arg(long, value_name = "DIR")]
     data: PathBuf,
+    /// How many drawn hands are learnt from.
+    #[arg(long, value_name = "N", default_value_t = SAMPLES, value_parser = sets::samples)]
+    samples: usize,
+    /// Look for the hand only: learn, estimate and refine nothing.
+    #[arg(long)]
+    windows_only: bool,
     /// Where the pictures go.
     #[arg(long, value_name = "DIR", default_value = "target/two-camera")]
     out: PathBuf,
@@ -70,11 +83,67 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         whole.join(" ")
     );
     sheet::write(&arguments.out, &looks)?;
+    if !arguments.windows_only {
+        let bar = progress::Bar::new();
+        report += &fit(arguments, &folder, &rig, &looks, &bar)?;
+    }
     files::print(&report)
 }
 
+/// Estimates, calibrates and refines the frames with the whole hand in both views; what came of it.
+fn fit(
+    arguments: &Arguments,
+    folder: &Path,
+    rig: &Rig,
+    looks: &[Look],
+    progress: &dyn Progress,
+) -> Result<String> {
+    let learnt = fit::learn(rig, &files::hand(None)?, arguments.samples, progress)?;
+    let (mut workspace, mut starts, mut whole) = (Workspace::default(), Vec::new(), Vec::new());
+    for look in looks.iter().filter(|look| is_whole(look)) {
+        let Ok(seen) = &look.seen else { continue };
+        match learnt.start(seen, &mut workspace) {
+            Ok(start) => {
+                starts.push(start);
+                whole.push(look);
+            }
+            Err(error) => eprintln!("{}: {error:#}", look.name),
+        }
+    }
+    let mean = learnt.estimator.hand();
+    let own = learnt.calibrate(&starts)?;
+    let names: Vec<&str> = whole.iter().map(|look| look.name.as_str()).collect();
+    let reference = angles::reference(folder, &names)?;
+    let rest = rig.volume.rest_frame();
+    let mut report = String::new();
+    for (what, hand) in [("mean", mean), ("own", &own)] {
+        let fitted = learnt.refine(hand, &starts)?;
+        let (least, reached) = fit::overlaps(&fitted, GOAL);
+        report += &format!(
+            "{what} hand, {:.0} mm long: least overlap of a frame's views {least:.3} on average; \
+             at least {GOAL} in both views in {:.0} % of {} frames\n",
+            fit::length_mm(hand),
+            100.0 * reached,
+            fitted.len()
+        );
+        for (look, fit) in whole.iter().zip(&fitted) {
+            let overlaps: Vec<String> =
+                fit.refined.overlaps.iter().map(|overlap| format!("{overlap:.3}")).collect();
+            report += &format!("  {} {}\n", look.name, overlaps.join(" "));
+        }
+        let of = |pose: &Pose| angles::of_joints(&hand.pose(pose, &rest).joints);
+        let started: Vec<_> = fitted.iter().map(|fit| of(&fit.start)).collect();
+        let refined: Vec<_> = fitted.iter().map(|fit| of(&fit.refined.pose)).collect();
+        report += &format!("estimated, {what} hand\n{}", angles::table(&started, &reference));
+        report += &format!("refined, {what} hand\n{}", angles::table(&refined, &reference));
+        let poses: Vec<Pose> = fitted.iter().map(|fit| fit.refined.pose).collect();
+        sheet::write_fits(&arguments.out, what, &whole, hand, &rest, &poses)?;
+    }
+    Ok(report)
+}
+
 /// The rig of the calibration, the person opposite the first camera.
-fn rig(folder: &std::path::Path) -> Result<Rig> {
+fn rig(folder: &Path) -> Result<Rig> {
     let path = folder.join("calibration.json");
     let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
     let cameras = cameras_from_opencv_json(&text, SQUARE_MM)?;

@@ -3,8 +3,11 @@
 use std::path::Path;
 
 use anyhow::Result;
+use glam::DAffine3;
 use image::{Rgb, RgbImage, imageops};
 use phalanx::{WORKING_SIZE, Window};
+use phalanx_hand::{HandShape, Pose};
+use phalanx_render::Renderer;
 use phalanx_segmentation::Silhouette;
 
 use super::{Look, Seen};
@@ -24,10 +27,42 @@ const FRAME: Rgb<u8> = Rgb([230, 40, 160]);
 /// and the window, and what the window shows with the silhouette's contour.
 pub(super) fn write(folder: &Path, looks: &[Look]) -> Result<()> {
     let panels: Vec<RgbImage> = looks.iter().map(panel).collect();
-    let (sheet, mut number) = ((COLUMNS * ROWS) as usize, 0);
-    for panels in panels.chunks(sheet) {
-        number += 1;
+    let sheet = (COLUMNS * ROWS) as usize;
+    for (panels, number) in panels.chunks(sheet).zip(1..) {
         let path = folder.join(format!("windows-{number}.png"));
+        files::write_png(&path, &mosaic(panels, COLUMNS, 6))?;
+    }
+    Ok(())
+}
+
+/// One row for each frame: the photograph through each window, the silhouette's contour (green) and
+/// that of the fitted hand (magenta).
+pub(super) fn write_fits(
+    folder: &Path,
+    name: &str,
+    looks: &[&Look],
+    hand: &HandShape,
+    rest: &DAffine3,
+    poses: &[Pose],
+) -> Result<()> {
+    let mut panels = Vec::new();
+    for (look, pose) in looks.iter().zip(poses) {
+        let Ok(seen) = &look.seen else { continue };
+        let solids = hand.pose(pose, rest).primitives;
+        let mut views = Vec::new();
+        for (view, window) in seen.windows.iter().enumerate() {
+            let drawn = Renderer::new(&window.camera)?.silhouette(&solids)?;
+            let mut panel = through(&look.images[view], window, &seen.silhouettes[view]);
+            if let Ok(drawn) = Silhouette::from_mask(&drawn) {
+                trace(&mut panel, &drawn, FRAME, 1);
+            }
+            views.push(panel);
+        }
+        panels.push(beside(&views));
+    }
+    let sheet = (COLUMNS * ROWS) as usize;
+    for (panels, number) in panels.chunks(sheet).zip(1..) {
+        let path = folder.join(format!("{name}-{number}.png"));
         files::write_png(&path, &mosaic(panels, COLUMNS, 6))?;
     }
     Ok(())
@@ -120,8 +155,14 @@ fn through(image: &RgbImage, window: &Window, silhouette: &Silhouette) -> RgbIma
         };
         window.to_picture(pixel).and_then(inside).copied().unwrap_or(Rgb([0, 0, 0]))
     });
-    for &[x, y] in &silhouette.contour.points {
-        dot(&mut view, [x * times, y * times], 0, SKIN);
-    }
+    trace(&mut view, silhouette, SKIN, 0);
     view
+}
+
+/// Colours the contour of what a window shows, in the enlarged window.
+fn trace(view: &mut RgbImage, silhouette: &Silhouette, colour: Rgb<u8>, radius: i64) {
+    let times = f64::from(HEIGHT) / f64::from(WORKING_SIZE.1);
+    for &[x, y] in &silhouette.contour.points {
+        dot(view, [x * times, y * times], radius, colour);
+    }
 }

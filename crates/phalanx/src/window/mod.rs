@@ -8,7 +8,8 @@ mod resample;
 use glam::DVec2;
 use image::GrayImage;
 use phalanx_camera::{Camera, PixelMap};
-use phalanx_segmentation::LocatedHand;
+use phalanx_refine::Evidence;
+use phalanx_segmentation::{LocatedHand, Silhouette};
 use serde::{Deserialize, Serialize};
 
 use crate::Result;
@@ -53,6 +54,14 @@ impl Window {
     /// A mask of the picture as the window shows it: 255 where at least half of a pixel is hand.
     pub fn resample(&self, mask: &GrayImage, seen: &mut GrayImage) {
         resample::resample(mask, &self.to_picture, seen);
+    }
+
+    /// What its silhouette tells of the pose.
+    ///
+    /// # Errors
+    /// A silhouette of another size than the window, or without a border.
+    pub fn evidence(&self, silhouette: &Silhouette) -> Result<Evidence> {
+        Ok(Evidence::new(&self.camera, &silhouette.mask)?)
     }
 
     /// The picture's pixel for one of the window; `None` where the picture's lens has none.
