@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 use phalanx::{
-    Estimate, Estimator, EvenlySpaced, Framing, Picture, Progress, Refiner, SceneDescriber, Scenes,
-    Shard, Training, Window, Workspace, initial_global,
+    Estimate, Estimator, EvenlySpaced, Framing, Picture, Preset, Progress, Refiner, SceneDescriber,
+    Scenes, Shard, Training, Window, Workspace, initial_global,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
@@ -14,12 +14,11 @@ use phalanx_refine::{Evidence, Refinement};
 use phalanx_segmentation::LocatedHand;
 use rayon::prelude::*;
 
-use crate::held_out::method::nystrom;
 use crate::sets::{self, Set, Test};
 use crate::{files, progress};
 
-/// Hands that are learnt from, unless it is said how many.
-const SAMPLES: usize = 5000;
+/// How the estimator is learnt.
+const PRESET: Preset = Preset::Fast;
 /// Hands of the test that are looked at, evenly spaced.
 const TESTED: usize = 500;
 
@@ -33,9 +32,9 @@ pub(crate) struct Arguments {
     /// The rig, TOML; the desk of fixtures/ by default.
     #[arg(long, value_name = "FILE.toml")]
     rig: Option<PathBuf>,
-    /// How many hands are learnt from.
-    #[arg(long, value_name = "N", default_value_t = SAMPLES, value_parser = sets::samples)]
-    samples: usize,
+    /// How many hands are learnt from; as many as the fast preset asks for by default.
+    #[arg(long, value_name = "N", value_parser = sets::samples)]
+    samples: Option<usize>,
 }
 
 /// What is wrong with one start.
@@ -58,7 +57,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     );
     for views in view_choices(&rig) {
         let seen = rig.select(&views)?;
-        let learnt = learn(&seen, &hand, arguments.samples, &bar)?;
+        let samples = arguments.samples.unwrap_or(PRESET.scenes());
+        let learnt = learn(&seen, &hand, samples, &bar)?;
         let test = Test::Placed.set(&seen, &hand, &[]);
         report += &rows(&learnt, &test, &bar)?;
     }
@@ -87,8 +87,7 @@ fn learn(
     samples: usize,
     progress: &dyn Progress,
 ) -> Result<(Estimator, Refiner)> {
-    let training =
-        Training { framing: Framing::Window, regressor: nystrom(), ..Training::default() };
+    let training = Training { framing: Framing::Window, ..PRESET.training() };
     let set = sets::placed(rig, hand, samples);
     let estimator = training.shard(rig, hand, &set, Shard::WHOLE, progress)?.finish()?;
     Ok((estimator, Refiner::new(rig, hand, &set.poses, Refinement::default())?))

@@ -1,9 +1,11 @@
 //! Poses of the real hand: estimated, placed, refined, and the hand calibrated.
 
 use anyhow::Result;
-use phalanx::{Estimate, Estimator, Framing, Progress, Refiner, Shard, Training, Workspace};
+use phalanx::{
+    Estimate, Estimator, Framing, Preset, Progress, Refiner, Shard, Training, Workspace,
+};
 use phalanx_camera::Rig;
-use phalanx_hand::{HandShape, Pose};
+use phalanx_hand::{Digit, HandShape, Pose};
 use phalanx_refine::{
     Calibration, CalibrationFrame, Evidence, HandDoubt, PosePrior, Refined, Refinement,
 };
@@ -11,7 +13,6 @@ use rayon::prelude::*;
 
 use super::Seen;
 use crate::global_pose::start;
-use crate::held_out::method::nystrom;
 use crate::sets;
 
 /// Frames that the hand is calibrated on, evenly spaced.
@@ -34,20 +35,14 @@ pub(super) struct Start {
     prior: PosePrior,
 }
 
-/// What came of a frame.
-pub(super) struct Fitted {
-    pub(super) start: Pose,
-    pub(super) refined: Refined,
-}
-
+/// Learns from drawn hands anywhere before the cameras.
 pub(super) fn learn(
     rig: &Rig,
     hand: &HandShape,
     samples: usize,
     progress: &dyn Progress,
 ) -> Result<Learnt> {
-    let training =
-        Training { framing: Framing::Window, regressor: nystrom(), ..Training::default() };
+    let training = Training { framing: Framing::Window, ..Preset::Fast.training() };
     let set = sets::loosely_placed(rig, hand, samples);
     let part = training.shard(rig, hand, &set, Shard::WHOLE, progress)?;
     if part.left_out() > 0 {
@@ -69,31 +64,75 @@ impl Learnt {
         Ok(Start { estimate, evidence, prior })
     }
 
-    /// The hand in some of the frames.
-    pub(super) fn calibrate(&self, starts: &[Start]) -> Result<HandShape> {
+    /// The hand in some of the frames, from where they were refined to.
+    pub(super) fn calibrate(&self, starts: &[Start], refined: &[Refined]) -> Result<HandShape> {
         let step = starts.len().div_ceil(CALIBRATED_ON).max(1);
-        let frame = |start: &Start| CalibrationFrame {
-            evidence: start.evidence.clone(),
-            start: *start.prior.mean(),
-            prior: start.prior.clone(),
+        let frame = |(start, refined): (&Start, &Refined)| -> Result<CalibrationFrame> {
+            let prior = start.prior.about(refined.pose)?;
+            Ok(CalibrationFrame { evidence: start.evidence.clone(), start: refined.pose, prior })
         };
-        let frames: Vec<CalibrationFrame> = starts.iter().step_by(step).map(frame).collect();
+        let frames: Vec<CalibrationFrame> =
+            starts.iter().zip(refined).step_by(step).map(frame).collect::<Result<_>>()?;
         let calibration = Calibration { hand: HAND, ..Calibration::default() };
-        let given = self.refiner.hand();
-        Ok(calibration.run(given, self.refiner.rest(), &frames)?.hand)
+        Ok(calibration.run(self.refiner.hand(), self.refiner.rest(), &frames)?.hand)
     }
 
-    /// All frames refined with a hand.
-    pub(super) fn refine(&self, hand: &HandShape, starts: &[Start]) -> Result<Vec<Fitted>> {
-        let refinement = Refinement::default();
-        let rest = self.refiner.rest();
-        let refine = |start: &Start| -> Result<Fitted> {
-            let mean = *start.prior.mean();
-            let refined = refinement.run(hand, rest, &start.evidence, &mean, &start.prior)?;
-            Ok(Fitted { start: start.estimate.pose, refined })
+    /// All frames refined with a hand: each from some poses, the best of which is kept, then from the
+    /// frame before it and from the frame after.
+    pub(super) fn refine(
+        &self,
+        hand: &HandShape,
+        starts: &[Start],
+        poses: impl Fn(usize) -> Vec<Pose> + Sync,
+    ) -> Result<Vec<Refined>> {
+        let alone = |k: usize, start: &Start| -> Result<Refined> {
+            let mean = self.from(hand, start, *start.prior.mean())?;
+            poses(k)
+                .into_iter()
+                .try_fold(mean, |best, pose| Ok(better(best, self.from(hand, start, pose)?)))
         };
-        starts.par_iter().map(refine).collect()
+        let mut refined: Vec<Refined> = starts
+            .par_iter()
+            .enumerate()
+            .map(|(k, start)| alone(k, start))
+            .collect::<Result<_>>()?;
+        let forwards = (1..starts.len()).map(|k| (k - 1, k));
+        let backwards = (1..starts.len()).rev().map(|k| (k, k - 1));
+        for (known, next) in forwards.chain(backwards) {
+            let followed = self.from(hand, &starts[next], refined[known].pose)?;
+            refined[next] = better(refined[next].clone(), followed);
+        }
+        Ok(refined)
     }
+
+    /// A frame refined from a pose, which takes the place of the estimate.
+    fn from(&self, hand: &HandShape, start: &Start, pose: Pose) -> Result<Refined> {
+        let prior = start.prior.about(pose)?;
+        let rest = self.refiner.rest();
+        Ok(Refinement::default().run(hand, rest, &start.evidence, &pose, &prior)?)
+    }
+}
+
+/// A pose with every finger either straight or folded into the palm.
+pub(super) fn postures(pose: &Pose) -> Vec<Pose> {
+    const FOLDED_DEG: [f64; 4] = [0.0, 60.0, 85.0, 50.0];
+    let posture = |folded: usize| {
+        let mut pose = *pose;
+        for (k, finger) in Digit::FINGERS.into_iter().enumerate() {
+            let share = f64::from(u8::from(folded >> k & 1 == 1));
+            for (dof, degrees) in finger.dofs().into_iter().zip(FOLDED_DEG) {
+                pose[dof] = (share * degrees).to_radians();
+            }
+        }
+        pose
+    };
+    (0..1 << Digit::FINGERS.len()).map(posture).collect()
+}
+
+/// That of two which covers more of what was seen, on average over the views.
+fn better(one: Refined, other: Refined) -> Refined {
+    let sum = |refined: &Refined| refined.overlaps.iter().sum::<f64>();
+    if sum(&other) > sum(&one) { other } else { one }
 }
 
 /// How long the hand is from the wrist to the middle finger's tip, mm.
@@ -104,8 +143,8 @@ pub(super) fn length_mm(hand: &HandShape) -> f64 {
 
 /// Means over frames of the least overlap of a frame's views, and the share of frames in which all
 /// views reach a goal.
-pub(super) fn overlaps(fitted: &[Fitted], goal: f64) -> (f64, f64) {
-    let least = |fit: &Fitted| fit.refined.overlaps.iter().copied().fold(1.0, f64::min);
+pub(super) fn overlaps(fitted: &[Refined], goal: f64) -> (f64, f64) {
+    let least = |fit: &Refined| fit.overlaps.iter().copied().fold(1.0, f64::min);
     let count = fitted.len().max(1) as f64;
     let mean = fitted.iter().map(least).sum::<f64>() / count;
     let reached = fitted.iter().filter(|fit| least(fit) >= goal).count();

@@ -13,7 +13,7 @@ use glam::DVec3;
 use image::{GrayImage, RgbImage};
 use phalanx::{Progress, Window, WindowFinder, Workspace};
 use phalanx_camera::{Rig, Volume, cameras_from_opencv_json, triangulate};
-use phalanx_hand::Pose;
+use phalanx_hand::{Dof, Pose, write_poses};
 use phalanx_segmentation::{Silhouette, SkinModel};
 
 use crate::{files, progress, sets};
@@ -22,7 +22,7 @@ use frames::Frame;
 /// The squares of the chessboard that the cameras were calibrated with, mm.
 const SQUARE_MM: f64 = 50.0;
 /// Hands that are learnt from, unless it is said how many.
-const SAMPLES: usize = 5000;
+const SAMPLES: usize = 3000;
 /// Overlap that is asked for in every view.
 const GOAL: f64 = 0.88;
 /// Side of the cube in which the wrist moves, mm.
@@ -111,14 +111,15 @@ fn fit(
         }
     }
     let mean = learnt.estimator.hand();
-    let own = learnt.calibrate(&starts)?;
+    let with_mean = learnt.refine(mean, &starts, |k| fit::postures(&starts[k].estimate.pose))?;
+    let own = learnt.calibrate(&starts, &with_mean)?;
+    let with_own = learnt.refine(&own, &starts, |k| vec![with_mean[k].pose])?;
     let names: Vec<&str> = whole.iter().map(|look| look.name.as_str()).collect();
     let reference = angles::reference(folder, &names)?;
     let rest = rig.volume.rest_frame();
     let mut report = String::new();
-    for (what, hand) in [("mean", mean), ("own", &own)] {
-        let fitted = learnt.refine(hand, &starts)?;
-        let (least, reached) = fit::overlaps(&fitted, GOAL);
+    for (what, hand, fitted) in [("mean", mean, &with_mean), ("own", &own, &with_own)] {
+        let (least, reached) = fit::overlaps(fitted, GOAL);
         report += &format!(
             "{what} hand, {:.0} mm long: least overlap of a frame's views {least:.3} on average; \
              at least {GOAL} in both views in {:.0} % of {} frames\n",
@@ -126,17 +127,20 @@ fn fit(
             100.0 * reached,
             fitted.len()
         );
-        for (look, fit) in whole.iter().zip(&fitted) {
+        for (look, fit) in whole.iter().zip(fitted) {
             let overlaps: Vec<String> =
-                fit.refined.overlaps.iter().map(|overlap| format!("{overlap:.3}")).collect();
+                fit.overlaps.iter().map(|overlap| format!("{overlap:.3}")).collect();
             report += &format!("  {} {}\n", look.name, overlaps.join(" "));
         }
         let of = |pose: &Pose| angles::of_joints(&hand.pose(pose, &rest).joints);
-        let started: Vec<_> = fitted.iter().map(|fit| of(&fit.start)).collect();
-        let refined: Vec<_> = fitted.iter().map(|fit| of(&fit.refined.pose)).collect();
+        let started: Vec<_> = starts.iter().map(|start| of(&start.estimate.pose)).collect();
+        let refined: Vec<_> = fitted.iter().map(|fit| of(&fit.pose)).collect();
         report += &format!("estimated, {what} hand\n{}", angles::table(&started, &reference));
         report += &format!("refined, {what} hand\n{}", angles::table(&refined, &reference));
-        let poses: Vec<Pose> = fitted.iter().map(|fit| fit.refined.pose).collect();
+        let poses: Vec<Pose> = fitted.iter().map(|fit| fit.pose).collect();
+        let mut csv = Vec::new();
+        write_poses(&mut csv, &poses, &Dof::ALL)?;
+        files::write_whole(&arguments.out.join(format!("poses-{what}.csv")), &csv)?;
         sheet::write_fits(&arguments.out, what, &whole, hand, &rest, &poses)?;
     }
     Ok(report)
