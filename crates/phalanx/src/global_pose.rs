@@ -46,7 +46,7 @@ pub fn initial_global(
         .collect::<Result<_>>()?;
     match views.as_slice() {
         [] => Err(Error::Mismatch { part: "views with a hand", found: 0, expected: 1 }),
-        [view] => one_view(rig, hand, fingers, view),
+        [view] => Ok(one_view(rig, hand, fingers, view)),
         views => {
             let met = triangulate(&views.iter().map(|view| view.wrist).collect::<Vec<_>>())?;
             let rest = rig.volume.rest_frame().matrix3.z_axis;
@@ -116,7 +116,7 @@ fn in_plane(view: &View<'_>, rest: DVec3) -> DVec3 {
 }
 
 /// The start from a single view.
-fn one_view(rig: &Rig, hand: &HandShape, fingers: &Pose, view: &View<'_>) -> Result<GlobalStart> {
+fn one_view(rig: &Rig, hand: &HandShape, fingers: &Pose, view: &View<'_>) -> GlobalStart {
     let direction = in_plane(view, rig.volume.rest_frame().matrix3.z_axis);
     let ray = view.wrist;
     let mut distance = (rig.volume.center - ray.origin).dot(ray.direction).max(1.0);
@@ -128,7 +128,7 @@ fn one_view(rig: &Rig, hand: &HandShape, fingers: &Pose, view: &View<'_>) -> Res
         let Some(length) = length_in_picture(rig, hand, &pose, view) else { break };
         distance *= (length / view.hand.length).clamp(0.25, 4.0);
     }
-    Ok(GlobalStart { pose, miss: 0.0 })
+    GlobalStart { pose, miss: 0.0 }
 }
 
 /// How far the posed hand reaches beyond its wrist along the arm in a view, px.
