@@ -7,6 +7,7 @@ mod described;
 mod experiments;
 mod files;
 mod fixtures;
+mod global_pose;
 mod headline;
 mod held_out;
 mod lab;
@@ -34,6 +35,8 @@ mod split;
 mod table1;
 mod train;
 mod trajectories;
+mod two_camera;
+mod wrist_model;
 
 use std::process::ExitCode;
 
@@ -63,6 +66,9 @@ enum Command {
     /// Test on what was never seen: other motion, hands, cameras, silhouettes.
     #[command(name = "eval-held-out")]
     EvalHeldOut(held_out::Arguments),
+    /// Test where hands are found and how they are turned, anywhere in the volume.
+    #[command(name = "eval-global")]
+    EvalGlobal(global_pose::Arguments),
     /// Put one of the paper's figures or claims to the test.
     Experiment(experiments::Arguments),
     /// Run every experiment and write one page that a reader of the paper can follow.
@@ -71,8 +77,12 @@ enum Command {
     Fixtures(fixtures::Arguments),
     /// Train the skin model that the segmentation crate ships.
     SkinModel(skin_model::Arguments),
+    /// Train the wrist model that the segmentation crate ships, and say how well it finds wrists.
+    WristModel(wrist_model::Arguments),
     /// Draw silhouettes, contours and axes over photographs, and measure the skin model.
     ContactSheet(contact_sheet::Arguments),
+    /// Find a real hand in the frames of two calibrated webcams, and draw what was seen.
+    TwoCamera(two_camera::Arguments),
     /// Write the README's table: Table 1 beside what was never seen.
     Headline(headline::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
@@ -107,12 +117,15 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::Merge(arguments) => merge::run(arguments)?,
         Command::EvalTable1(arguments) => table1::run(arguments)?,
         Command::EvalHeldOut(arguments) => return held_out::run(arguments),
+        Command::EvalGlobal(arguments) => global_pose::run(arguments)?,
         Command::Experiment(arguments) => experiments::run(arguments)?,
         Command::Report(arguments) => return report::run(arguments),
         Command::Headline(arguments) => headline::run(arguments)?,
         Command::Fixtures(arguments) => fixtures::run(arguments)?,
         Command::SkinModel(arguments) => skin_model::run(arguments)?,
+        Command::WristModel(arguments) => wrist_model::run(arguments)?,
         Command::ContactSheet(arguments) => contact_sheet::run(arguments)?,
+        Command::TwoCamera(arguments) => two_camera::run(arguments)?,
         Command::Pictures(arguments) => pictures::run(arguments)?,
         Command::RefineTrial(arguments) => refine_trial::run(arguments)?,
         Command::Performance(arguments) => performance::run(arguments)?,

@@ -1,6 +1,7 @@
 //! What is learnt from and what is tested on.
 
 use clap::ValueEnum;
+use glam::DVec3;
 use phalanx::{Border, Damage, Hands, ItemRandom, Scene, Scenes};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, coupled_pose, uncoupled_pose};
@@ -67,6 +68,47 @@ pub(crate) fn clean<'a>(
     poses: Vec<Pose>,
 ) -> Set<'a> {
     Set { name, rig, hand, poses, damage: Damage::NONE, seed: TRAIN_DAMAGE }
+}
+
+/// How far the arm of [`placed`] hands leans in θ_X and in θ_Y, degrees.
+const LEAN_DEG: f64 = 30.0;
+
+/// How far the wrists of [`loosely_placed`] hands bend, degrees.
+const WRIST_DEG: [(Dof, [f64; 2]); 2] =
+    [(Dof::WristFlexion, [-30.0, 50.0]), (Dof::WristDeviation, [-25.0, 15.0])];
+
+/// A coupled pose with its wrist anywhere in the working volume, its arm leaning in θ_X and θ_Y.
+fn placed_pose(random: &mut ItemRandom, size_mm: DVec3) -> Pose {
+    let mut pose = coupled_pose(|| random.uniform());
+    for (dof, size) in [Dof::TX, Dof::TY, Dof::TZ].into_iter().zip(size_mm.to_array()) {
+        pose[dof] = random.between(-0.5 * size, 0.5 * size);
+    }
+    for dof in [Dof::ThetaX, Dof::ThetaY] {
+        pose[dof] = random.between(-LEAN_DEG, LEAN_DEG).to_radians();
+    }
+    pose
+}
+
+/// Hands anywhere in the rig's volume to learn from: [`random`] ones with augmentation, placed as
+/// those of [`Test::Placed`].
+pub(crate) fn placed<'a>(rig: &'a Rig, hand: &'a HandShape, samples: usize) -> Set<'a> {
+    let size = rig.volume.size;
+    let poses = independent(samples, TRAIN_POSES, |random| placed_pose(random, size));
+    Set { name: "placed", poses, ..random(rig, hand, 1, Augment::Yes) }
+}
+
+/// The same with wrists that bend, as those of people who are not told to keep them straight.
+pub(crate) fn loosely_placed<'a>(rig: &'a Rig, hand: &'a HandShape, samples: usize) -> Set<'a> {
+    let size = rig.volume.size;
+    let bent = |random: &mut ItemRandom| {
+        let mut pose = placed_pose(random, size);
+        for (dof, [low, high]) in WRIST_DEG {
+            pose[dof] = random.between(low, high).to_radians();
+        }
+        pose
+    };
+    let poses = independent(samples, TRAIN_POSES, bent);
+    Set { name: "loosely_placed", poses, ..random(rig, hand, 1, Augment::Yes) }
 }
 
 /// Independent poses from the coupled prior to learn from, θ_Z uniform in 0° … 90°. A larger set
@@ -148,12 +190,14 @@ pub(crate) enum Test {
     Rolled,
     /// Eight other hands, cameras turned by 1–3°, ragged silhouettes, θ_Z between.
     All,
+    /// Independent poses anywhere in the rig's volume, the arm leaning by up to 30° in θ_X and θ_Y.
+    Placed,
     /// Motion from a file.
     Poses,
 }
 
 impl Test {
-    /// All but motion from outside.
+    /// All that whole pictures can be described of, but motion from outside.
     pub(crate) const SYNTHETIC: [Self; 10] = [
         Self::Unseen,
         Self::ThetaBetween,
@@ -180,6 +224,7 @@ impl Test {
             Self::Ragged => "ragged",
             Self::Rolled => "rolled",
             Self::All => "all",
+            Self::Placed => "placed",
             Self::Poses => "poses",
         }
     }
@@ -193,6 +238,10 @@ impl Test {
             }
             Self::Uncoupled => {
                 independent(TEST_SAMPLES, TEST_POSES, |random| uncoupled_pose(|| random.uniform()))
+            }
+            Self::Placed => {
+                let size = rig.volume.size;
+                independent(TEST_SAMPLES, TEST_POSES, |random| placed_pose(random, size))
             }
             Self::Poses => outside(motion),
             _ => takes(&THETA_Z_DEG),
@@ -209,9 +258,12 @@ impl Test {
             Self::Ragged => Damage { border: Border::Ragged, ..Damage::NONE },
             Self::Rolled => Damage { camera_roll: 30_f64.to_radians(), ..Damage::NONE },
             Self::All => Damage { hands, border: Border::Ragged, ..turned(1.0, 3.0) },
-            Self::Unseen | Self::ThetaBetween | Self::Random | Self::Uncoupled | Self::Poses => {
-                Damage::NONE
-            }
+            Self::Unseen
+            | Self::ThetaBetween
+            | Self::Random
+            | Self::Uncoupled
+            | Self::Placed
+            | Self::Poses => Damage::NONE,
         }
     }
 }

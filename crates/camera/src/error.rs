@@ -1,6 +1,6 @@
 //! What can be wrong with a camera, a volume or a rig.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// The result of this crate's fallible calls.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -15,6 +15,53 @@ pub enum Error {
         /// The parser's message, with the line at fault.
         message: String,
     },
+    /// The text is no calibration in JSON, or misses a key.
+    #[error("calibration: {message}")]
+    Json {
+        /// The parser's message, with the line at fault.
+        message: String,
+    },
+    /// The unit of a calibration's lengths is not one.
+    #[error("calibration: a unit of {unit_mm} mm is no length")]
+    Unit {
+        /// The unit, mm.
+        unit_mm: f64,
+    },
+    /// A camera matrix that is not one of a camera without skew.
+    #[error("camera `{camera}`: camera_matrix is not [fx 0 cx; 0 fy cy; 0 0 1]")]
+    CameraMatrix {
+        /// The camera.
+        camera: String,
+    },
+    /// Distortion coefficients of another lens model.
+    #[error(
+        "camera `{camera}`: {found} distortion_coefficients; k1 k2 p1 p2 and perhaps k3 are known"
+    )]
+    DistortionCount {
+        /// The camera.
+        camera: String,
+        /// How many there are.
+        found: usize,
+    },
+    /// A virtual camera's two directions do not make axes.
+    #[error("camera `{camera}`: cannot be turned to {ahead} with {right} to the right")]
+    VirtualAxis {
+        /// The camera.
+        camera: String,
+        /// Where it should look.
+        ahead: DVec3,
+        /// What should be to the right.
+        right: DVec3,
+    },
+    /// One ray, or none, determines no point.
+    #[error("{found} rays are too few to triangulate: at least 2 are needed")]
+    TooFewRays {
+        /// How many there are.
+        found: usize,
+    },
+    /// Rays that are all but parallel, or not finite.
+    #[error("the rays are parallel: no point is nearest to them")]
+    ParallelRays,
     /// The rig has no camera.
     #[error("the rig has no camera")]
     NoCamera,
@@ -79,13 +126,14 @@ pub enum Error {
         /// The point, px.
         point: DVec2,
     },
-    /// The distortion maps two directions to one pixel somewhere within the image.
-    #[error("camera `{camera}`: distortion folds over before it reaches the corner {corner} px")]
+    /// The distortion maps two directions to one pixel well within the image. That it does so in
+    /// the corners, where calibrations are extrapolated, is allowed; no direction is known there.
+    #[error("camera `{camera}`: distortion folds over before it reaches {pixel} px")]
     Folding {
         /// The camera.
         camera: String,
-        /// The image corner that it does not reach, px.
-        corner: DVec2,
+        /// The middle of a side of the image that it does not reach, px.
+        pixel: DVec2,
     },
     /// Neither, both or parts of the two ways to say where a camera stands.
     #[error(

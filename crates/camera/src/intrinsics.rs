@@ -135,12 +135,10 @@ impl Intrinsics {
             return Err(Error::NotFinite { camera: camera(), field: "principal_point_px" });
         }
         let (w, h) = (f64::from(width), f64::from(height));
-        match [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)]
-            .map(DVec2::from)
-            .into_iter()
-            .find(|&corner| self.to_normalised(corner).is_none())
-        {
-            Some(corner) => Err(Error::Folding { camera: camera(), corner }),
+        let middles = [(w / 2.0, 0.0), (w, h / 2.0), (w / 2.0, h), (0.0, h / 2.0)];
+        let unreached = |&pixel: &DVec2| self.to_normalised(pixel).is_none();
+        match middles.map(DVec2::from).into_iter().find(unreached) {
+            Some(pixel) => Err(Error::Folding { camera: camera(), pixel }),
             None => Ok(()),
         }
     }

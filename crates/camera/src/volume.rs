@@ -3,7 +3,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Result};
+use crate::{Camera, Error, Ray, Result, triangulate};
 
 /// Where the hand works in the world.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -28,6 +28,28 @@ impl Volume {
         let x = self.up.normalize_or(DVec3::Y).cross(z);
         let x = x.normalize_or(z.any_orthonormal_vector());
         DAffine3::from_mat3_translation(DMat3::from_cols(x, z.cross(x), z), self.center)
+    }
+
+    /// A guess where cameras that look at one place expect the hand: in a cube of `side` mm about
+    /// the point nearest to their axes, its back towards them, the fingers pointing up the first
+    /// camera's picture.
+    ///
+    /// # Errors
+    /// A single camera, or axes that are parallel: they meet nowhere.
+    pub fn between(cameras: &[Camera], side: f64) -> Result<Self> {
+        let axis = |camera: &Camera| camera.extrinsics.rotation.row(2);
+        let axes: Vec<Ray> = cameras
+            .iter()
+            .map(|camera| Ray { origin: camera.centre(), direction: axis(camera) })
+            .collect();
+        let volume = Self {
+            center: triangulate(&axes)?.point,
+            size: DVec3::splat(side),
+            forearm: -cameras[0].extrinsics.rotation.row(1),
+            up: -cameras.iter().map(axis).sum::<DVec3>(),
+        };
+        volume.validate()?;
+        Ok(volume)
     }
 
     /// Checks that all is finite, the sizes positive, and the directions non-zero and not

@@ -1,7 +1,9 @@
 //! Projection and its inverse, moved, cropped, resized and written to TOML.
 
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, EulerRot};
-use phalanx_camera::{Camera, Distortion, Extrinsics, Intrinsics, Rig, Volume};
+use phalanx_camera::{
+    Camera, Distortion, Error, Extrinsics, Intrinsics, PixelMap, Ray, Rig, Volume, triangulate,
+};
 use proptest::prelude::*;
 
 prop_compose! {
@@ -148,6 +150,63 @@ proptest! {
     }
 
     #[test]
+    fn a_virtual_camera_sees_what_the_map_says(
+        camera in cameras(), u in 0.0..1.0, v in 0.0..1.0, far in 50.0..2000.0,
+        (aim_u, aim_v) in (0.0..1.0, 0.0..1.0), right in vectors(1.0), focal in 80.0..900.0,
+    ) {
+        prop_assume!(camera.validate().is_ok());
+        let aim = camera.unproject(pixel_of(&camera, aim_u, aim_v)).unwrap();
+        let across = aim.direction.cross(right);
+        prop_assume!(across.length() > 0.05);
+        let inside = Intrinsics::pinhole(120, 90, focal);
+        let turned = camera.turned(aim.direction, right, inside).unwrap();
+        turned.validate().unwrap();
+        prop_assert!((turned.centre() - camera.centre()).length() < 1e-9);
+        // The axis goes where it was aimed, and the image's x along `right`.
+        let middle = turned.project(aim.origin + aim.direction * far).unwrap();
+        prop_assert!((middle - inside.principal_point()).length() < 1e-6);
+        prop_assert!(turned.extrinsics.rotation.row(0).dot(right) > 0.0);
+        prop_assert!(turned.extrinsics.rotation.row(1).dot(right).abs() < 1e-9);
+        // Map and projection of a point in space agree, both ways.
+        let pixel = pixel_of(&camera, u, v);
+        let ray = camera.unproject(pixel).unwrap();
+        let map = PixelMap::between(&camera, &turned);
+        let Some(seen) = turned.project(ray.origin + ray.direction * far) else {
+            prop_assert_eq!(map.map(pixel), None);
+            return Ok(());
+        };
+        let mapped = map.map(pixel).unwrap();
+        prop_assert!((mapped - seen).length() < 1e-6 * (1.0 + seen.length()));
+        let back = map.inverse().map(seen).unwrap();
+        prop_assert!((back - pixel).length() < 1e-5, "{back} is not {pixel}");
+    }
+
+    #[test]
+    fn rays_that_meet_are_triangulated_exactly(
+        point in vectors(500.0),
+        centres in prop::collection::vec(vectors(2000.0), 2..6), shift in vectors(1.0),
+    ) {
+        let ray = |&origin: &DVec3| Ray { origin, direction: (point - origin).normalize_or(DVec3::X) };
+        let mut rays: Vec<Ray> = centres.iter().map(ray).collect();
+        prop_assume!(centres.iter().all(|&origin| (point - origin).length() > 50.0));
+        prop_assume!(rays[0].direction.cross(rays[1].direction).length() > 0.05);
+        let met = triangulate(&rays).unwrap();
+        prop_assert!((met.point - point).length() < 1e-7 && met.spread < 1e-7, "{met:?}");
+        // Of rays that do not meet, no point near the nearest is nearer.
+        rays[0].origin += shift;
+        let nearest = triangulate(&rays).unwrap();
+        let cost = |at: DVec3| -> f64 {
+            rays.iter().map(|r| (at - r.origin).cross(r.direction).length_squared()).sum()
+        };
+        let least = cost(nearest.point);
+        prop_assert!((nearest.spread.powi(2) * rays.len() as f64 - least).abs() < 1e-6);
+        for step in [DVec3::X, DVec3::Y, DVec3::Z] {
+            prop_assert!(cost(nearest.point + 0.1 * step) > least);
+            prop_assert!(cost(nearest.point - 0.1 * step) > least);
+        }
+    }
+
+    #[test]
     fn toml_reads_back_exactly(camera in cameras(), far in 100.0..900.0, size in 1.0..400.0,
                                q in rotations()) {
         prop_assume!(camera.validate().is_ok());
@@ -195,4 +254,28 @@ fn a_point_beyond_the_fold_is_not_seen() {
     let folded = DVec2::new(1.8, 0.0);
     assert!(distortion.distort(folded).length() < 0.1);
     assert_eq!(intrinsics.to_pixel(folded), None);
+}
+
+#[test]
+fn rays_without_a_nearest_point_are_refused() {
+    let ray = |x: f64, direction| Ray { origin: DVec3::new(x, 0.0, 0.0), direction };
+    let [ahead, nan] = [DVec3::Z, DVec3::NAN];
+    assert_eq!(triangulate(&[ray(0.0, ahead)]), Err(Error::TooFewRays { found: 1 }));
+    assert_eq!(triangulate(&[ray(0.0, ahead), ray(9.0, ahead)]), Err(Error::ParallelRays));
+    assert_eq!(triangulate(&[ray(0.0, ahead), ray(9.0, nan)]), Err(Error::ParallelRays));
+}
+
+#[test]
+fn cameras_are_not_turned_to_nowhere() {
+    let inside = Intrinsics::pinhole(120, 90, 100.0);
+    let camera = Camera::look_at("c", inside, DVec3::ZERO, DVec3::Z, DVec3::Y).unwrap();
+    for (ahead, right) in [
+        (DVec3::ZERO, DVec3::X),
+        (DVec3::Z, DVec3::ZERO),
+        (DVec3::Z, DVec3::NEG_Z),
+        (DVec3::NAN, DVec3::X),
+    ] {
+        let turned = camera.turned(ahead, right, inside);
+        assert!(matches!(turned, Err(Error::VirtualAxis { .. })), "{turned:?}");
+    }
 }

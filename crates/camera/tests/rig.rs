@@ -127,9 +127,11 @@ fn contradictory_cameras_are_refused_by_name() {
     refused!(middle("[60, nan]"), Error::NotFinite { field: "principal_point_px", .. });
     let lens = |k: &str| edited(&[("width = 120", &format!("width = 120\n distortion = {k}"))]);
     refused!(lens("[nan, 0, 0, 0, 0]"), Error::NotFinite { field: "distortion", .. });
-    // The corners are at a radius of 0.283, where r (1 + k1 r²) must still grow and reach it.
-    refused!(lens("[-2.0, 0, 0, 0, 0]"), Error::Folding { .. });
-    lens("[-1.5, 0, 0, 0, 0]").unwrap();
+    // The middle of the right side is at a radius of 0.226, where r (1 + k1 r²) must still grow and
+    // reach it; the corners, at 0.283, need not be reached.
+    refused!(lens("[-3.0, 0, 0, 0, 0]"), Error::Folding { .. });
+    let corners = lens("[-2.0, 0, 0, 0, 0]").unwrap();
+    assert_eq!(corners.cameras[0].unproject(DVec2::ZERO), None);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The `phalanx` program.
 
 mod estimate;
+mod import_calibration;
 mod input;
 mod output;
 
@@ -22,11 +23,16 @@ struct Arguments {
 enum Command {
     /// Estimate the pose of a hand from one picture per camera.
     Estimate(estimate::Arguments),
+    /// Make a rig file of a calibration in OpenCV's conventions.
+    ImportCalibration(import_calibration::Arguments),
 }
 
 fn main() -> ExitCode {
-    let Command::Estimate(arguments) = Arguments::parse().command;
-    match estimate::run(&arguments) {
+    let done = match Arguments::parse().command {
+        Command::Estimate(arguments) => estimate::run(&arguments),
+        Command::ImportCalibration(arguments) => import_calibration::run(&arguments),
+    };
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("phalanx: {error:#}");

@@ -121,18 +121,23 @@ pub(crate) fn print(result: &str) -> Result<()> {
     out.write_all(result.as_bytes()).and_then(|()| out.flush()).context("writing the result")
 }
 
-/// Writes a picture as PNG under a temporary name and renames it, so that it is never
-/// half-written.
+/// Writes a picture as PNG, whole or not at all.
 pub(crate) fn write_png(path: &Path, picture: &RgbImage) -> Result<()> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    let encoded = picture.write_to(&mut png, ImageFormat::Png);
+    encoded.with_context(|| format!("writing {}", path.display()))?;
+    write_whole(path, png.get_ref())
+}
+
+/// Writes a file under a temporary name and renames it, so that it is never half-written.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
     let write = || -> Result<()> {
-        let mut png = std::io::Cursor::new(Vec::new());
-        picture.write_to(&mut png, ImageFormat::Png)?;
         let mut file = readable_by_others().tempfile_in(folder)?;
-        file.write_all(png.get_ref())?;
+        file.write_all(bytes)?;
         file.persist(path)?;
         Ok(())
     };

@@ -9,7 +9,7 @@ use phalanx_shape_context::{Descriptors, Orientation, ShapeContexts};
 use serde::{Deserialize, Serialize};
 
 use crate::outline::{chain, trace_outline};
-use crate::{Error, Picture, Result};
+use crate::{Error, Framing, Picture, Result};
 
 /// The size at which pictures are described, width and height: the paper's 90 × 120 pixels.
 pub const WORKING_SIZE: (u32, u32) = (120, 90);
@@ -33,6 +33,21 @@ pub enum OrientationRule {
     /// ahead of a cut squarely across the forearm, so that a rolled camera sees the same ones.
     #[default]
     ForearmAxis,
+}
+
+/// How pictures are looked at. Whoever asks for an [`OrientationRule`] alone gets whole pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Sight {
+    /// Which way shape contexts are turned.
+    pub orientation: OrientationRule,
+    /// What of the pictures is described.
+    pub framing: Framing,
+}
+
+impl From<OrientationRule> for Sight {
+    fn from(orientation: OrientationRule) -> Self {
+        Self { orientation, framing: Framing::default() }
+    }
 }
 
 impl OrientationRule {

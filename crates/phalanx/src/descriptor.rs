@@ -9,13 +9,13 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::coverage::{COVERAGE, coverage_into};
-use crate::{Describer, Error, OrientationRule, Progress, Result, SceneDescriber, Scenes};
+use crate::{Describer, Error, OrientationRule, Progress, Result, SceneDescriber, Scenes, Sight};
 
 /// What a regressor reads of the silhouettes: codes of their shape contexts, view by view, and then
 /// what is put beside them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Descriptor {
-    orientation: OrientationRule,
+    sight: Sight,
     codes: Codes,
     beside: Beside,
 }
@@ -42,13 +42,18 @@ pub(crate) struct Memory {
 
 impl Descriptor {
     /// Puts a descriptor together.
-    pub fn new(orientation: OrientationRule, codes: impl Into<Codes>, beside: Beside) -> Self {
-        Self { orientation, codes: codes.into(), beside }
+    pub fn new(sight: impl Into<Sight>, codes: impl Into<Codes>, beside: Beside) -> Self {
+        Self { sight: sight.into(), codes: codes.into(), beside }
     }
 
     /// Which way shape contexts are turned.
     pub fn orientation(&self) -> OrientationRule {
-        self.orientation
+        self.sight.orientation
+    }
+
+    /// How pictures are looked at.
+    pub fn sight(&self) -> Sight {
+        self.sight
     }
 
     /// The codings of the views' shape contexts.
@@ -109,7 +114,7 @@ impl Descriptor {
         let views = rig.cameras.iter().zip(silhouettes.clone()).zip(&mut *contexts);
         for ((camera, silhouette), kept) in views {
             let contexts = describer
-                .contexts(silhouette, self.orientation)
+                .contexts(silhouette, self.sight.orientation)
                 .map_err(|reason| Error::ShapeContext { camera: camera.name.clone(), reason })?;
             kept.clear();
             kept.extend_from_slice(contexts.values());
@@ -137,7 +142,7 @@ pub fn describe_scenes(
     descriptor: &Descriptor,
     progress: &dyn Progress,
 ) -> Result<Vec<Result<Vec<f64>>>> {
-    let drawing = SceneDescriber::new(rig, descriptor.orientation)?;
+    let drawing = SceneDescriber::new(rig, descriptor.sight)?;
     let describe = |(drawing, memory): &mut (SceneDescriber, Memory), &pose: &usize| {
         let mut x = Vec::new();
         let described = drawing.see(&scenes.scene(pose)).and_then(|()| {

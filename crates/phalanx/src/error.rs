@@ -1,5 +1,7 @@
 //! What can be wrong with training, models and pictures.
 
+use glam::DVec2;
+
 /// An error of this crate.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -11,6 +13,16 @@ pub enum Error {
         camera: String,
         /// The reason.
         reason: phalanx_segmentation::Error,
+    },
+    /// A hand at whose place the lens has no room for a window.
+    #[error(
+        "camera '{camera}': there is no window on the hand: the lens maps nothing to {pixel} px"
+    )]
+    NoWindow {
+        /// The camera's name.
+        camera: String,
+        /// A place that the window would show, px of the picture.
+        pixel: DVec2,
     },
     /// A silhouette has no shape contexts.
     #[error("camera '{camera}': {reason}")]

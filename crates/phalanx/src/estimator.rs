@@ -1,11 +1,15 @@
 //! The fitted estimator: from one picture per camera to a pose.
 
 use glam::DVec3;
+use image::GrayImage;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
 use phalanx_segmentation::{Forearm, Silhouette};
 
-use crate::{Descriptor, Error, OrientationRule, Picture, Regression, Result, descriptor};
+use crate::{
+    Descriptor, Error, Framing, OrientationRule, Picture, Regression, Result, Window, WindowFinder,
+    descriptor,
+};
 
 /// A pose estimator for one rig and one hand; see [`Training`](crate::Training) for how to get
 /// one.
@@ -34,12 +38,14 @@ pub struct Estimate {
 #[derive(Debug, Default)]
 pub struct Workspace {
     silhouettes: Vec<Silhouette>,
+    windows: Vec<Window>,
     memory: Memory,
 }
 
 /// What a [`Workspace`] keeps besides the silhouettes.
 #[derive(Debug, Default)]
 struct Memory {
+    windows: WindowFinder,
     description: descriptor::Memory,
     x: Vec<f64>,
     regression: phalanx_rvm::Scratch,
@@ -50,6 +56,12 @@ impl Workspace {
     /// meaning if it failed.
     pub fn silhouettes(&self) -> &[Silhouette] {
         &self.silhouettes
+    }
+
+    /// The windows that the last silhouettes are seen in, where the estimator looks through windows;
+    /// of no meaning if it failed.
+    pub fn windows(&self) -> &[Window] {
+        &self.windows
     }
 }
 
@@ -115,17 +127,46 @@ impl Estimator {
         workspace: &mut Workspace,
     ) -> Result<Estimate> {
         self.check_count(pictures.len())?;
-        let Workspace { silhouettes, memory } = workspace;
-        silhouettes.resize_with(pictures.len(), Silhouette::default);
-        for ((view, &picture), silhouette) in pictures.iter().enumerate().zip(&mut *silhouettes) {
+        for (view, picture) in pictures.iter().enumerate() {
             self.check_shape(view, picture.size())?;
+        }
+        let Workspace { silhouettes, windows, memory } = workspace;
+        silhouettes.resize_with(pictures.len(), Silhouette::default);
+        windows.clear();
+        match self.descriptor.sight().framing {
+            Framing::Picture => self.see_whole(pictures, silhouettes, memory)?,
+            Framing::Window => {
+                let masks = self.masks(pictures)?;
+                *windows = memory.windows.find(&self.rig.cameras, &masks, None)?;
+                memory.windows.silhouettes(windows, silhouettes)?;
+            }
+        }
+        self.look_at(silhouettes, memory)
+    }
+
+    /// The silhouettes of whole pictures.
+    fn see_whole(
+        &self,
+        pictures: &[Picture<'_>],
+        silhouettes: &mut [Silhouette],
+        memory: &mut Memory,
+    ) -> Result<()> {
+        for ((view, &picture), silhouette) in pictures.iter().enumerate().zip(silhouettes) {
             memory
                 .description
                 .describer
                 .silhouette(picture, silhouette)
                 .map_err(|reason| Error::Silhouette { camera: self.camera(view), reason })?;
         }
-        self.look_at(silhouettes, memory)
+        Ok(())
+    }
+
+    /// The raw masks of pictures, as large as they are.
+    fn masks(&self, pictures: &[Picture<'_>]) -> Result<Vec<GrayImage>> {
+        let mask = |(view, picture): (usize, &Picture<'_>)| {
+            picture.mask().map_err(|reason| Error::Silhouette { camera: self.camera(view), reason })
+        };
+        pictures.iter().enumerate().map(mask).collect()
     }
 
     /// Estimates the pose from one silhouette per camera, of any size, in the order of the rig's

@@ -4,7 +4,7 @@ use phalanx_camera::Rig;
 use phalanx_multiview::{Concatenation, Scratch};
 use rayon::prelude::*;
 
-use crate::{Error, OrientationRule, Progress, Result, SceneDescriber, Scenes};
+use crate::{Error, Progress, Result, SceneDescriber, Scenes, Sight};
 
 /// Codebooks of some of a rig's cameras.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,11 +42,11 @@ pub fn describe_with(
     rig: &Rig,
     scenes: &dyn Scenes,
     numbers: &[usize],
-    rule: OrientationRule,
+    sight: impl Into<Sight>,
     codebooks: &[ViewCodebooks],
     progress: &dyn Progress,
 ) -> Result<Vec<Result<Vec<Vec<f64>>>>> {
-    let describer = SceneDescriber::new(rig, rule)?;
+    let describer = SceneDescriber::new(rig, sight)?;
     let describe = |(describer, scratch): &mut (SceneDescriber, Scratch), &number: &usize| {
         let described = describer.contexts(&scenes.scene(number)).and_then(|contexts| {
             codebooks.iter().map(|codebooks| codebooks.describe(&contexts, scratch)).collect()

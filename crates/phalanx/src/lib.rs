@@ -7,6 +7,7 @@ mod describe;
 mod descriptor;
 mod error;
 mod estimator;
+mod global_pose;
 mod histograms;
 mod model_file;
 mod outline;
@@ -23,12 +24,14 @@ mod scene;
 mod shard;
 mod training;
 mod training_views;
+mod window;
 
 pub use damage::{Border, Damage, Hands};
-pub use describe::{Describer, OrientationRule, WORKING_SIZE, working_camera};
+pub use describe::{Describer, OrientationRule, Sight, WORKING_SIZE, working_camera};
 pub use descriptor::{Beside, Descriptor, describe_scenes};
 pub use error::{Error, Result};
 pub use estimator::{Estimate, Estimator, Workspace};
+pub use global_pose::{GlobalStart, initial_global};
 pub use histograms::{ViewCodebooks, describe_with};
 pub use overlay::{draw_overlay, working_window};
 pub use part::Part;
@@ -45,6 +48,7 @@ pub use training::{Description, Training, descriptors, targets};
 pub use training_views::{
     PoseContexts, SceneDescriber, describe_each, describe_poses, draw_silhouette,
 };
+pub use window::{Framing, Window, WindowFinder};
 
 /// The example of the repository's README, which must compile.
 #[cfg(doctest)]

@@ -103,7 +103,7 @@ impl Training {
     ) -> Result<Basis> {
         self.regressor.summed()?;
         let spaced = EvenlySpaced::new(scenes, Training::CODEBOOK_SCENES);
-        let described = describe_each(rig, &spaced, self.orientation, progress)?;
+        let described = describe_each(rig, &spaced, self.sight(), progress)?;
         let (contexts, failed): (Vec<_>, Vec<_>) = described.into_iter().partition(Result::is_ok);
         let contexts: Vec<_> = contexts.into_iter().filter_map(Result::ok).collect();
         if contexts.len() < 2 {

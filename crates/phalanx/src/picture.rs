@@ -22,6 +22,14 @@ impl Picture<'_> {
             Self::Mask(mask) => mask.dimensions(),
         }
     }
+
+    /// The raw mask, as large as the picture.
+    pub(crate) fn mask(&self) -> Result<GrayImage, phalanx_segmentation::Error> {
+        match self {
+            Self::Photograph(image, segmenter) => segmenter.segment(image),
+            Self::Mask(mask) => Ok((*mask).clone()),
+        }
+    }
 }
 
 /// How the hand is told from the rest of a photograph.
@@ -29,7 +37,8 @@ impl Picture<'_> {
 pub enum Segmenter {
     /// By the colour of skin (§ 2 of the paper).
     Skin(SkinModel),
-    /// By its difference from the recorded background of the same camera, at the working size.
+    /// By its difference from the recorded background of the same camera, at the size at which it is segmented: the
+    /// working size, or the picture's where windows are described.
     Background(BackgroundModel),
     /// By its difference from a plain wall.
     Wall(Wall),

@@ -4,7 +4,7 @@ use phalanx_codebook::KMeans;
 use phalanx_multiview::Vocabulary;
 use phalanx_rvm::{Deviation, GradientMetric, Nystrom, Penalty, Width};
 
-use crate::{Description, LearntMetric, OrientationRule, Regressor, Training};
+use crate::{Description, Framing, LearntMetric, OrientationRule, Regressor, Training};
 
 /// How much time an estimator is worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -46,6 +46,7 @@ impl Preset {
         };
         Training {
             orientation: OrientationRule::default(),
+            framing: Framing::default(),
             vocabulary: Vocabulary {
                 centres: 48,
                 clustering: KMeans { restarts: 1, ..KMeans::default() },

@@ -8,8 +8,8 @@ use phalanx_rvm::{KernelRidge, Lambda, Width};
 use rayon::prelude::*;
 
 use crate::{
-    Beside, Descriptor, Error, Estimator, NominalScenes, OrientationRule, PoseContexts, Progress,
-    Regressor, Result, Shard, describe_poses,
+    Beside, Descriptor, Error, Estimator, Framing, NominalScenes, OrientationRule, PoseContexts,
+    Progress, Regressor, Result, Shard, Sight, describe_poses,
 };
 
 /// How an estimator is learnt. The default is the paper's descriptor, turned to the forearm's axis,
@@ -22,6 +22,8 @@ use crate::{
 pub struct Training {
     /// Which way shape contexts are turned.
     pub orientation: OrientationRule,
+    /// What of the pictures is looked at.
+    pub framing: Framing,
     /// The codebooks.
     pub vocabulary: Vocabulary,
     /// What is described with them.
@@ -44,6 +46,7 @@ impl Default for Training {
     fn default() -> Self {
         Self {
             orientation: OrientationRule::default(),
+            framing: Framing::default(),
             vocabulary: Vocabulary::default(),
             description: Description::Counts,
             regressor: Regressor::KernelRidge(KernelRidge {
@@ -82,7 +85,7 @@ impl Training {
             let scenes = NominalScenes { rig, hand, poses };
             return self.shard(rig, hand, &scenes, Shard::WHOLE, progress)?.finish();
         }
-        let contexts = describe_poses(rig, hand, poses, self.orientation, progress)?;
+        let contexts = describe_poses(rig, hand, poses, self.sight(), progress)?;
         progress.begin("cluster shape contexts", 1);
         let views = self.vocabulary.fit(&contexts, phalanx_shape_context::BINS)?;
         progress.step();
@@ -90,20 +93,25 @@ impl Training {
         progress.begin("fit the regressor", 1);
         let fit = self.regressor.fit(&x, &targets(poses))?;
         progress.step();
-        let descriptor = Descriptor::new(self.orientation, views, Beside::Nothing);
+        let descriptor = Descriptor::new(self.sight(), views, Beside::Nothing);
         Estimator::from_parts(rig.clone(), hand.clone(), descriptor, fit.model)
+    }
+
+    /// How pictures are looked at.
+    pub(crate) fn sight(&self) -> Sight {
+        Sight { orientation: self.orientation, framing: self.framing }
     }
 
     /// The descriptor, with codebooks learnt from shape contexts.
     pub(crate) fn descriptor(&self, contexts: &[PoseContexts]) -> Result<Descriptor> {
-        let (bins, rule) = (phalanx_shape_context::BINS, self.orientation);
+        let (bins, sight) = (phalanx_shape_context::BINS, self.sight());
         Ok(match self.description {
             Description::Counts => {
-                Descriptor::new(rule, self.vocabulary.fit(contexts, bins)?, Beside::Nothing)
+                Descriptor::new(sight, self.vocabulary.fit(contexts, bins)?, Beside::Nothing)
             }
             Description::Residuals => {
                 let codes: Codes = self.vocabulary.fit_residuals(contexts, bins)?;
-                Descriptor::new(rule, codes, Beside::Coverage)
+                Descriptor::new(sight, codes, Beside::Coverage)
             }
         })
     }

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use crate::damage::make_ragged;
 use crate::{
-    Describer, Error, NominalScenes, OrientationRule, Picture, Progress, Result, Scene, Scenes,
-    View, WORKING_SIZE, working_camera,
+    Describer, Error, Framing, NominalScenes, Picture, Progress, Result, Scene, Scenes, Sight,
+    WindowFinder, working_camera,
 };
 
 /// The shape contexts of one pose: for each camera, its contour points' histograms one after the
@@ -27,10 +27,11 @@ pub fn describe_poses(
     rig: &Rig,
     hand: &HandShape,
     poses: &[Pose],
-    rule: OrientationRule,
+    sight: impl Into<Sight>,
     progress: &dyn Progress,
 ) -> Result<Vec<PoseContexts>> {
-    describe_each(rig, &NominalScenes { rig, hand, poses }, rule, progress)?.into_iter().collect()
+    let scenes = NominalScenes { rig, hand, poses };
+    describe_each(rig, &scenes, sight, progress)?.into_iter().collect()
 }
 
 /// Draws scenes through every camera of a rig and describes the silhouettes, in parallel; the
@@ -41,10 +42,10 @@ pub fn describe_poses(
 pub fn describe_each(
     rig: &Rig,
     scenes: &dyn Scenes,
-    rule: OrientationRule,
+    sight: impl Into<Sight>,
     progress: &dyn Progress,
 ) -> Result<Vec<Result<PoseContexts>>> {
-    let describer = SceneDescriber::new(rig, rule)?;
+    let describer = SceneDescriber::new(rig, sight)?;
     progress.begin("render and describe", scenes.count());
     let describe = |describer: &mut SceneDescriber, pose: usize| {
         let contexts = describer.contexts(&scenes.scene(pose));
@@ -54,7 +55,8 @@ pub fn describe_each(
     Ok((0..scenes.count()).into_par_iter().map_init(|| describer.clone(), describe).collect())
 }
 
-/// Draws a posed hand as one camera's silhouette at [`WORKING_SIZE`].
+/// Draws a posed hand as one camera's silhouette at
+/// [`WORKING_SIZE`](crate::WORKING_SIZE).
 ///
 /// # Errors
 /// A hand that reaches behind the camera.
@@ -74,28 +76,41 @@ pub fn draw_silhouette(
 /// Draws scenes and describes their silhouettes, one after another in the same memory.
 #[derive(Debug, Clone)]
 pub struct SceneDescriber {
-    rule: OrientationRule,
-    views: Vec<ViewDescriber>,
-}
-
-/// What one camera sees.
-#[derive(Debug, Clone)]
-struct ViewDescriber {
-    name: String,
-    renderer: Renderer,
-    drawn: GrayImage,
+    sight: Sight,
+    cameras: Vec<Camera>,
+    renderers: Vec<Renderer>,
+    drawn: Vec<GrayImage>,
     describer: Describer,
-    silhouette: Silhouette,
+    windows: WindowFinder,
+    silhouettes: Vec<Silhouette>,
 }
 
 impl SceneDescriber {
-    /// For the cameras of a rig.
+    /// For the cameras of a rig: drawn at [`WORKING_SIZE`](crate::WORKING_SIZE) where whole pictures
+    /// are described, and as large as they are where windows are.
     ///
     /// # Errors
     /// A camera that cannot draw.
-    pub fn new(rig: &Rig, rule: OrientationRule) -> Result<Self> {
-        let views = rig.cameras.iter().map(ViewDescriber::new).collect::<Result<_>>()?;
-        Ok(Self { rule, views })
+    pub fn new(rig: &Rig, sight: impl Into<Sight>) -> Result<Self> {
+        let sight = sight.into();
+        let drawing = |camera: &Camera| match sight.framing {
+            Framing::Picture => working_camera(camera),
+            Framing::Window => Ok(camera.clone()),
+        };
+        let cameras: Vec<Camera> = rig.cameras.iter().map(drawing).collect::<Result<_>>()?;
+        let renderer = |camera: &Camera| {
+            Renderer::new(camera)
+                .map_err(|reason| Error::Render { camera: camera.name.clone(), reason })
+        };
+        Ok(Self {
+            sight,
+            renderers: cameras.iter().map(renderer).collect::<Result<_>>()?,
+            drawn: vec![GrayImage::default(); cameras.len()],
+            describer: Describer::default(),
+            windows: WindowFinder::default(),
+            silhouettes: vec![Silhouette::default(); cameras.len()],
+            cameras,
+        })
     }
 
     /// The scene's shape contexts in every camera.
@@ -104,7 +119,16 @@ impl SceneDescriber {
     /// Another number of views than cameras, or one that cannot be seen or described.
     pub fn contexts(&mut self, scene: &Scene) -> Result<PoseContexts> {
         self.see(scene)?;
-        self.views.iter_mut().map(|view| view.contexts(self.rule)).collect()
+        let rule = self.sight.orientation;
+        let mut contexts = Vec::with_capacity(self.cameras.len());
+        for (camera, silhouette) in self.cameras.iter().zip(&self.silhouettes) {
+            let described = self
+                .describer
+                .contexts(silhouette, rule)
+                .map_err(|reason| Error::ShapeContext { camera: camera.name.clone(), reason })?;
+            contexts.push(described.values().to_vec());
+        }
+        Ok(contexts)
     }
 
     /// The scene's silhouettes in every camera, as they are described: damaged, and cleaned again.
@@ -121,49 +145,55 @@ impl SceneDescriber {
 
     /// The silhouettes of the scene last seen.
     pub(crate) fn seen(&self) -> impl Iterator<Item = &Silhouette> + Clone {
-        self.views.iter().map(|view| &view.silhouette)
+        self.silhouettes.iter()
+    }
+
+    /// The scene's masks, as large as they are drawn: damaged, and not cleaned.
+    ///
+    /// # Errors
+    /// Another number of views than cameras, or a hand that reaches behind one.
+    pub fn masks(&mut self, scene: &Scene) -> Result<&[GrayImage]> {
+        self.draw(scene)?;
+        Ok(&self.drawn)
     }
 
     pub(crate) fn see(&mut self, scene: &Scene) -> Result<()> {
-        let (found, expected) = (scene.views.len(), self.views.len());
+        self.draw(scene)?;
+        match self.sight.framing {
+            Framing::Picture => {
+                let views = self.cameras.iter().zip(&self.drawn).zip(&mut self.silhouettes);
+                for ((camera, drawn), silhouette) in views {
+                    let seen = self.describer.silhouette(Picture::Mask(drawn), silhouette);
+                    seen.map_err(|reason| Error::Silhouette {
+                        camera: camera.name.clone(),
+                        reason,
+                    })?;
+                }
+            }
+            Framing::Window => {
+                let windows = self.windows.find(&self.cameras, &self.drawn, None)?;
+                self.windows.silhouettes(&windows, &mut self.silhouettes)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws the scene in every camera, ragged where it is.
+    fn draw(&mut self, scene: &Scene) -> Result<()> {
+        let (found, expected) = (scene.views.len(), self.cameras.len());
         if found != expected {
             return Err(Error::Mismatch { part: "views of the scene", found, expected });
         }
-        let mut views = self.views.iter_mut().zip(&scene.views);
-        views.try_for_each(|(describer, view)| describer.see(scene, view))
-    }
-}
-
-impl ViewDescriber {
-    fn new(camera: &Camera) -> Result<Self> {
-        let name_camera = |reason| Error::Render { camera: camera.name.clone(), reason };
-        Ok(Self {
-            name: camera.name.clone(),
-            renderer: Renderer::new(&working_camera(camera)?).map_err(name_camera)?,
-            drawn: GrayImage::new(WORKING_SIZE.0, WORKING_SIZE.1),
-            describer: Describer::default(),
-            silhouette: Silhouette::default(),
-        })
-    }
-
-    fn see(&mut self, scene: &Scene, view: &View) -> Result<()> {
-        let camera = || self.name.clone();
-        let solids = scene.hand.pose(&scene.pose, &view.rest).primitives;
-        self.renderer
-            .silhouette_into(&solids, &mut self.drawn)
-            .map_err(|reason| Error::Render { camera: camera(), reason })?;
-        if let Some(seed) = view.ragged {
-            make_ragged(&mut self.drawn, seed);
+        let renderers = self.renderers.iter_mut().zip(&self.cameras).zip(&mut self.drawn);
+        for (((renderer, camera), drawn), view) in renderers.zip(&scene.views) {
+            let solids = scene.hand.pose(&scene.pose, &view.rest).primitives;
+            renderer
+                .silhouette_into(&solids, drawn)
+                .map_err(|reason| Error::Render { camera: camera.name.clone(), reason })?;
+            if let Some(seed) = view.ragged {
+                make_ragged(drawn, seed);
+            }
         }
-        self.describer
-            .silhouette(Picture::Mask(&self.drawn), &mut self.silhouette)
-            .map_err(|reason| Error::Silhouette { camera: camera(), reason })
-    }
-
-    fn contexts(&mut self, rule: OrientationRule) -> Result<Vec<f32>> {
-        self.describer
-            .contexts(&self.silhouette, rule)
-            .map(|contexts| contexts.values().to_vec())
-            .map_err(|reason| Error::ShapeContext { camera: self.name.clone(), reason })
+        Ok(())
     }
 }

@@ -51,13 +51,19 @@ impl Renderer {
     /// straight line. It only decides how finely outlines are drawn.
     const SHARPEST: f64 = 2.0;
 
+    /// Places on each side of the picture at which the lens is asked how far it reaches, less one.
+    const BORDER: u32 = 32;
+
     /// A renderer for this camera, which must be valid.
     pub fn new(camera: &Camera) -> Result<Self> {
         camera.validate()?;
         let intrinsics = camera.intrinsics;
         let (w, h) = (f64::from(intrinsics.width), f64::from(intrinsics.height));
-        let corners = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)].map(DVec2::from);
-        let radii = corners.iter().filter_map(|&c| intrinsics.to_normalised(c)).map(DVec2::length);
+        // All of the border, for a lens may not reach the corners.
+        let shares = (0..=Self::BORDER).map(|k| f64::from(k) / f64::from(Self::BORDER));
+        let border = shares
+            .flat_map(|s| [(s * w, 0.0), (s * w, h), (0.0, s * h), (w, s * h)].map(DVec2::from));
+        let radii = border.filter_map(|p| intrinsics.to_normalised(p)).map(DVec2::length);
         let farthest = radii.fold(0.0, f64::max);
         // A little more, where the lens allows it, so that what is cut there stays out of sight.
         let reach = (0..=10)

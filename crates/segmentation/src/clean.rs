@@ -26,7 +26,7 @@ impl Default for Cleanup {
 }
 
 impl Cleanup {
-    fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         let radius = f64::from(self.majority_radius);
         let checks = [
             ("majority_radius", radius, 7.0, "0 to 7"),
@@ -39,6 +39,11 @@ impl Cleanup {
             }
         }
         Ok(())
+    }
+
+    /// The fewest pixels of a hand in an image of so many.
+    pub(crate) fn needed(&self, pixels: usize) -> usize {
+        (self.min_hand * pixels as f64).ceil().max(1.0) as usize
     }
 }
 
@@ -85,8 +90,7 @@ pub fn clean_into(
     workspace.majority.vote(mask, columns, cleanup.majority_radius as usize, pixels);
 
     let components = &mut workspace.components;
-    let needed = (cleanup.min_hand * pixels.len() as f64).ceil().max(1.0) as usize;
-    let area = keep_largest(components, pixels, columns, needed)?;
+    let area = keep_largest(components, pixels, columns, cleanup.needed(mask.len()))?;
 
     let max_hole = (cleanup.max_hole * area as f64) as usize;
     components.label(pixels, columns, Class::Background);

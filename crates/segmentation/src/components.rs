@@ -32,6 +32,14 @@ pub(crate) struct Region {
     pub(crate) touches_border: bool,
 }
 
+/// Columns `start..end` of a row of a component.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Span {
+    pub(crate) row: usize,
+    pub(crate) start: usize,
+    pub(crate) end: usize,
+}
+
 /// The components of one class of a mask; its memory is used again.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Components {
@@ -108,6 +116,18 @@ impl Components {
             run = grandparent;
         }
         run
+    }
+
+    /// All components of at least so many pixels, as identity and region, in reading order.
+    pub(crate) fn at_least(&self, area: usize) -> impl Iterator<Item = usize> + '_ {
+        let first = move |&(i, run): &(usize, &Run)| run.parent == i && run.region.area >= area;
+        self.runs.iter().enumerate().filter(first).map(|(i, _)| i)
+    }
+
+    /// What one component consists of.
+    pub(crate) fn spans(&self, component: usize) -> Vec<Span> {
+        let own = self.runs.iter().filter(|run| run.parent == component);
+        own.map(|&Run { row, start, end, .. }| Span { row, start, end }).collect()
     }
 
     /// The largest component, as its identity and region. Of equal ones, one that touches the

@@ -65,6 +65,25 @@ pub enum Error {
         /// Hand pixels at the two ends.
         areas: [usize; 2],
     },
+    /// Nothing in the mask has a section that could be a wrist.
+    #[error("no hand: no part of the mask is wide enough to have a wrist")]
+    NoHand,
+    /// Too few silhouettes to learn from.
+    #[error("{found} silhouettes with a wrist to learn from, at least {needed} are needed")]
+    TooFewWrists {
+        /// How many there were.
+        found: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// Bytes that are not a wrist model.
+    #[error("not a wrist model: line {line}: {reason}")]
+    WristModel {
+        /// Line at fault, counted from 1; 0 for the whole.
+        line: usize,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
     /// Nothing in the picture stands out from the wall.
     #[error(
         "no contrast: hand and wall differ by {difference:.1} grey levels, at least {needed} are needed"

@@ -1,5 +1,6 @@
 //! The real program, run as its users run it.
 
+mod calibrations;
 mod desk;
 mod estimates;
 mod refusals;

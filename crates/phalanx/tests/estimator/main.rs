@@ -10,4 +10,5 @@ mod photographs;
 mod refusals;
 mod shards;
 mod training;
+mod windows;
 mod working_size;

@@ -1,0 +1,71 @@
+//! The hand seen through a virtual camera that is turned and zoomed onto it.
+
+mod choice;
+mod finder;
+mod layout;
+mod resample;
+
+use glam::DVec2;
+use image::GrayImage;
+use phalanx_camera::{Camera, PixelMap};
+use phalanx_refine::Evidence;
+use phalanx_segmentation::{LocatedHand, Silhouette};
+use serde::{Deserialize, Serialize};
+
+use crate::Result;
+
+pub use finder::WindowFinder;
+
+/// What of a camera's picture is described.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Framing {
+    /// The whole picture, brought to [`WORKING_SIZE`](crate::WORKING_SIZE): the paper's way, for a
+    /// hand that fills a fifth of it.
+    #[default]
+    Picture,
+    /// A [`Window`] on the hand, wherever and however large it is in the picture.
+    Window,
+}
+
+/// A virtual camera of [`WORKING_SIZE`](crate::WORKING_SIZE), turned and zoomed onto a hand so that
+/// it fills a fifth of the picture. The arm comes from the left border, at most one hand length
+/// behind the wrist: all that is further back is outside the picture, and no contour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Window {
+    /// The virtual camera, at the real one's place.
+    pub camera: Camera,
+    /// The hand in the real camera's picture, px.
+    pub hand: LocatedHand,
+    /// From the window's pixels to the picture's.
+    to_picture: PixelMap,
+}
+
+impl Window {
+    /// The window on a hand in a camera's picture.
+    ///
+    /// # Errors
+    /// A hand so near the picture's border that the lens has no place for its window.
+    pub fn onto(camera: &Camera, hand: &LocatedHand) -> Result<Self> {
+        let virtual_camera = layout::camera(camera, hand)?;
+        let to_picture = PixelMap::between(&virtual_camera, camera);
+        Ok(Self { camera: virtual_camera, hand: *hand, to_picture })
+    }
+
+    /// A mask of the picture as the window shows it: 255 where at least half of a pixel is hand.
+    pub fn resample(&self, mask: &GrayImage, seen: &mut GrayImage) {
+        resample::resample(mask, &self.to_picture, seen);
+    }
+
+    /// What its silhouette tells of the pose.
+    ///
+    /// # Errors
+    /// A silhouette of another size than the window, or without a border.
+    pub fn evidence(&self, silhouette: &Silhouette) -> Result<Evidence> {
+        Ok(Evidence::new(&self.camera, &silhouette.mask)?)
+    }
+
+    /// The picture's pixel for one of the window; `None` where the picture's lens has none.
+    pub fn to_picture(&self, pixel: [f64; 2]) -> Option<[f64; 2]> {
+        self.to_picture.map(DVec2::from_array(pixel)).map(DVec2::into)
+    }
+}

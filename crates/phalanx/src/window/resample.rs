@@ -1,0 +1,87 @@
+//! A mask as another camera at the same place sees it.
+
+use glam::DVec2;
+use image::GrayImage;
+use phalanx_camera::PixelMap;
+
+use crate::WORKING_SIZE;
+
+/// Samples along a row between places where the map is evaluated; it is straight in between, to far
+/// less than a pixel.
+const STRETCH: u32 = 8;
+
+/// The most samples along a side of a window's pixel.
+const MOST_SAMPLES: u32 = 4;
+
+/// Fills `seen` ([`WORKING_SIZE`]) with the mask under a map from its pixels to the mask's: 255 where
+/// the mask covers at least half of a pixel. There is nothing outside the mask.
+pub(super) fn resample(mask: &GrayImage, to_mask: &PixelMap, seen: &mut GrayImage) {
+    let (width, height) = WORKING_SIZE;
+    if seen.dimensions() != WORKING_SIZE {
+        *seen = GrayImage::new(width, height);
+    }
+    let samples = samples_aside(to_mask);
+    let mut row = Vec::with_capacity((width * samples) as usize);
+    let mut sums = vec![0.0; width as usize];
+    for y in 0..height {
+        sums.fill(0.0);
+        for k in 0..samples {
+            let y = f64::from(y) + (f64::from(k) + 0.5) / f64::from(samples);
+            positions(to_mask, y, width * samples, f64::from(samples), &mut row);
+            for (sum, positions) in sums.iter_mut().zip(row.chunks_exact(samples as usize)) {
+                *sum += positions.iter().map(|&position| level(mask, position)).sum::<f64>();
+            }
+        }
+        let half = 0.5 * f64::from(samples * samples);
+        for (x, &sum) in sums.iter().enumerate() {
+            seen.get_pixel_mut(x as u32, y).0[0] = if sum >= half { 255 } else { 0 };
+        }
+    }
+}
+
+/// Samples along a side of a pixel: as many as it covers of the mask's pixels.
+fn samples_aside(to_mask: &PixelMap) -> u32 {
+    let middle = DVec2::new(f64::from(WORKING_SIZE.0), f64::from(WORKING_SIZE.1)) / 2.0;
+    let ends = [-0.5, 0.5].map(|offset| to_mask.map(middle + DVec2::X * offset));
+    let [Some(from), Some(to)] = ends else { return 1 };
+    (from.distance(to).ceil() as u32).clamp(1, MOST_SAMPLES)
+}
+
+/// Where `count` samples of a row, so many to the pixel, lie in the mask; NaN where nowhere.
+fn positions(to_mask: &PixelMap, y: f64, count: u32, per_pixel: f64, row: &mut Vec<DVec2>) {
+    let at = |sample: u32| {
+        let x = (f64::from(sample) + 0.5) / per_pixel;
+        to_mask.map(DVec2::new(x, y)).unwrap_or(DVec2::NAN)
+    };
+    row.clear();
+    let mut from = at(0);
+    for first in (0..count).step_by(STRETCH as usize) {
+        let to = at(first + STRETCH);
+        let step = (to - from) / f64::from(STRETCH);
+        let ahead = STRETCH.min(count - first);
+        row.extend((0..ahead).map(|k| from + step * f64::from(k)));
+        from = to;
+    }
+}
+
+/// How much of the mask's pixels around a position is hand, 0 to 1, weighted by nearness.
+fn level(mask: &GrayImage, position: DVec2) -> f64 {
+    let corner = position - 0.5;
+    let (width, height) = (f64::from(mask.width()), f64::from(mask.height()));
+    // A NaN is not inside.
+    let inside = corner.x > -1.0 && corner.y > -1.0 && corner.x < width && corner.y < height;
+    if !inside {
+        return 0.0;
+    }
+    let first = corner.floor();
+    let share = corner - first;
+    let (x, y) = (first.x as i64, first.y as i64);
+    let hand = |dx: i64, dy: i64| {
+        let (x, y) = (x + dx, y + dy);
+        let within =
+            (0..i64::from(mask.width())).contains(&x) && (0..i64::from(mask.height())).contains(&y);
+        if within && mask.get_pixel(x as u32, y as u32).0[0] > 127 { 1.0 } else { 0.0 }
+    };
+    let row = |dy: i64| (1.0 - share.x) * hand(0, dy) + share.x * hand(1, dy);
+    (1.0 - share.y) * row(0) + share.y * row(1)
+}

@@ -1,0 +1,190 @@
+//! Windows on the hand: where they look, that training and use see the same through them, and that
+//! shift and scale of the picture make no difference.
+
+use glam::{DVec2, DVec3};
+use image::{GrayImage, Luma};
+use phalanx::{
+    Framing, OrientationRule, Picture, Scene, SceneDescriber, Sight, Training, Window,
+    WindowFinder, Workspace, initial_global,
+};
+use phalanx_camera::{Camera, Distortion, Intrinsics, Rig};
+use phalanx_hand::{Dof, HandShape, Pose};
+use phalanx_render::Renderer;
+use phalanx_segmentation::{LocatedHand, Silhouette};
+use proptest::prelude::*;
+
+use crate::desk::{closing, poses, rig, training, unseen};
+
+const THROUGH_WINDOWS: Sight =
+    Sight { orientation: OrientationRule::ForearmAxis, framing: Framing::Window };
+
+/// The mask of a posed hand as a camera of any size sees it.
+fn mask(camera: &Camera, pose: &Pose) -> GrayImage {
+    let solids = HandShape::adult().pose(pose, &rig().volume.rest_frame()).primitives;
+    Renderer::new(camera).unwrap().silhouette(&solids).unwrap()
+}
+
+/// What a camera's window shows of a mask.
+fn look(camera: &Camera, mask: &GrayImage) -> (Window, Silhouette) {
+    let mut finder = WindowFinder::default();
+    let cameras = std::slice::from_ref(camera);
+    let windows = finder.find(cameras, std::slice::from_ref(mask), None).unwrap();
+    let mut silhouettes = [Silhouette::default()];
+    finder.silhouettes(&windows, &mut silhouettes).unwrap();
+    let [silhouette] = silhouettes;
+    (windows[0].clone(), silhouette)
+}
+
+fn overlap(a: &GrayImage, b: &GrayImage) -> f64 {
+    let both = a.iter().zip(b.iter()).filter(|(a, b)| **a > 127 && **b > 127).count();
+    let any = a.iter().zip(b.iter()).filter(|(a, b)| **a > 127 || **b > 127).count();
+    both as f64 / any as f64
+}
+
+/// A wide camera above the desk, with a lens.
+fn wide() -> Camera {
+    let distortion = Distortion { k1: -0.1, k2: 0.02, p1: 1e-3, p2: -1e-3, k3: 0.0 };
+    let intrinsics = Intrinsics { distortion, ..Intrinsics::pinhole(480, 360, 420.0) };
+    let (at, to) = (DVec3::new(60.0, 650.0, 20.0), DVec3::new(40.0, 0.0, 10.0));
+    Camera::look_at("wide", intrinsics, at, to, DVec3::X).unwrap()
+}
+
+#[test]
+fn the_hand_fills_a_fifth_and_points_to_the_right() {
+    for pose in unseen() {
+        let camera = wide();
+        let (window, silhouette) = look(&camera, &mask(&camera, &pose));
+        let hand = silhouette.mask.iter().filter(|&&level| level > 127).count() as f64;
+        // With the arm, which is less than the hand.
+        let share = hand / silhouette.mask.len() as f64;
+        assert!((0.15..0.4).contains(&share), "{share}");
+        assert_eq!(silhouette.forearm.crossings, 1);
+        assert_eq!(silhouette.forearm.end[0], 0.5, "the arm comes from the left");
+        let posed = HandShape::adult().pose(&pose, &rig().volume.rest_frame());
+        let wrist = window.camera.project(posed.joints[0]).unwrap();
+        assert!(wrist.x < 65.0 && (wrist.y - 45.0).abs() < 25.0, "{wrist}");
+    }
+}
+
+#[test]
+fn window_and_picture_show_the_same_points() {
+    let camera = wide();
+    let pose = closing(0.3, 30.0);
+    let (window, _) = look(&camera, &mask(&camera, &pose));
+    for joint in HandShape::adult().pose(&pose, &rig().volume.rest_frame()).joints {
+        let seen = window.camera.project(joint).unwrap();
+        let pictured = DVec2::from_array(window.to_picture(seen.to_array()).unwrap());
+        assert!((pictured - camera.project(joint).unwrap()).length() < 1e-6);
+    }
+}
+
+#[test]
+fn training_and_use_see_the_same() {
+    let (rig, hand) = (rig(), HandShape::adult());
+    let training = Training { framing: Framing::Window, ..training(OrientationRule::ForearmAxis) };
+    let estimator = training.run(&rig, &hand, &poses(), &phalanx::Silent).unwrap();
+    let read = phalanx::Estimator::from_bytes(&estimator.to_bytes().unwrap()).unwrap();
+    assert_eq!(read, estimator);
+    assert_eq!(read.descriptor().sight(), THROUGH_WINDOWS);
+    let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
+    let (mut workspace, mut worst) = (Workspace::default(), 0.0_f64);
+    for pose in unseen() {
+        let scene = Scene::nominal(&rig, &hand, pose);
+        let masks = describer.masks(&scene).unwrap().to_vec();
+        let trained_on: Vec<Silhouette> = describer.silhouettes(&scene).unwrap().cloned().collect();
+        let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
+        let estimate = estimator.estimate(&pictures, &mut workspace).unwrap();
+        assert_eq!(workspace.silhouettes(), trained_on);
+        for dof in [Dof::IndexPip, Dof::MiddleMcp, Dof::ThetaZ] {
+            worst = worst.max((estimate.pose[dof] - pose[dof]).abs().to_degrees());
+        }
+    }
+    assert!(worst < 20.0, "{worst}");
+}
+
+#[test]
+fn whole_pictures_have_no_windows() {
+    let (rig, hand) = (rig(), HandShape::adult());
+    let mut workspace = Workspace::default();
+    let estimator = training(OrientationRule::ForearmAxis)
+        .run(&rig, &hand, &poses(), &phalanx::Silent)
+        .unwrap();
+    let masks: Vec<GrayImage> =
+        rig.cameras.iter().map(|camera| mask(camera, &closing(0.5, 10.0))).collect();
+    let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
+    estimator.estimate(&pictures, &mut workspace).unwrap();
+    assert_eq!(workspace.windows(), []);
+}
+
+/// The hand as it would be located without error.
+fn located(camera: &Camera, wrist: DVec3, arm: DVec3) -> LocatedHand {
+    let [at, ahead] = [wrist, wrist + arm].map(|point| camera.project(point).unwrap());
+    LocatedHand {
+        wrist: at.to_array(),
+        direction: (ahead - at).normalize().to_array(),
+        width: 20.0,
+        length: 70.0,
+        across: [-20.0, 20.0],
+        area: 2000.0,
+        arm: 30.0,
+        cut_off: false,
+        strangeness: 5.0,
+        component: 0,
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 40, ..ProptestConfig::default() })]
+
+    #[test]
+    fn several_views_tell_the_global_pose(
+        t in prop::array::uniform3(-50.0..50.0), lean in prop::array::uniform2(-0.5..0.5),
+        theta_z in 0.0..1.57, views in prop::sample::select(vec![vec![0, 1], vec![1, 2], vec![0, 1, 2]]),
+    ) {
+        let rig = Rig { cameras: views.iter().map(|&v| rig().cameras[v].clone()).collect(), ..rig() };
+        let mut pose = Pose::REST;
+        [pose[Dof::TX], pose[Dof::TY], pose[Dof::TZ]] = t;
+        [pose[Dof::ThetaX], pose[Dof::ThetaY]] = lean;
+        pose[Dof::ThetaZ] = theta_z;
+        let arm = pose.rotation().z_axis;
+        let hands: Vec<_> =
+            rig.cameras.iter().map(|camera| Some(located(camera, DVec3::from(t), arm))).collect();
+        let known = Pose { ..pose };
+        let mut fingers = Pose::REST;
+        fingers[Dof::ThetaZ] = theta_z;
+        let start = initial_global(&rig, &HandShape::adult(), &fingers, &hands).unwrap();
+        prop_assert!(start.miss < 1e-6);
+        for dof in Dof::ALL {
+            prop_assert!((start.pose[dof] - known[dof]).abs() < 1e-3, "{dof}: {:?}", start.pose[dof]);
+        }
+    }
+
+    #[test]
+    fn scale_and_shift_of_the_picture_make_no_difference(
+        closed in 0.0..1.0, theta in 0.0..60.0, zoom in 2_u32..4, dx in 0_u32..60, dy in 0_u32..60,
+    ) {
+        let camera = wide();
+        let pose = closing(closed, theta);
+        let whole = mask(&camera, &pose);
+        let (_, seen) = look(&camera, &whole);
+        // The same picture with more pixels.
+        let inside = camera.intrinsics;
+        let finer = camera.with_intrinsics(inside.resized(zoom * 480, zoom * 360));
+        let (_, finer) = look(&finer, &mask(&finer, &pose));
+        prop_assert!(overlap(&seen.mask, &finer.mask) > 0.85, "{}", overlap(&seen.mask, &finer.mask));
+        // The same picture on a larger sensor: all pixels moved.
+        let shifted = Intrinsics {
+            width: 480 + dx, height: 360 + dy,
+            cx: inside.cx + f64::from(dx), cy: inside.cy + f64::from(dy), ..inside
+        };
+        let shifted = camera.with_intrinsics(shifted);
+        let moved = GrayImage::from_fn(480 + dx, 360 + dy, |x, y| match (x.checked_sub(dx), y.checked_sub(dy)) {
+            (Some(x), Some(y)) => *whole.get_pixel(x, y),
+            // The arm goes on to the border.
+            (None, y) => *whole.get_pixel(0, y.unwrap_or(0)),
+            _ => Luma([0]),
+        });
+        let (_, moved) = look(&shifted, &moved);
+        prop_assert!(overlap(&seen.mask, &moved.mask) > 0.85, "{}", overlap(&seen.mask, &moved.mask));
+    }
+}

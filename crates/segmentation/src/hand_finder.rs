@@ -1,0 +1,252 @@
+//! Where in a mask a hand may be, and where its wrist is.
+
+use image::GrayImage;
+
+use crate::clean::Cleanup;
+use crate::components::{Class, Components};
+use crate::error::{Error, Result};
+use crate::geodesic::Geodesic;
+use crate::grid::Grid;
+use crate::majority::Majority;
+use crate::sections::Sections;
+use crate::wrist::WristModel;
+
+/// What may be a hand in a mask: a component, and where its wrist would be. All in pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LocatedHand {
+    /// The middle of the wrist.
+    pub wrist: [f64; 2],
+    /// Unit vector along the arm, towards the hand.
+    pub direction: [f64; 2],
+    /// The arm's width at the wrist.
+    pub width: f64,
+    /// How far the hand reaches beyond the wrist, along the direction.
+    pub length: f64,
+    /// How far it reaches to either side of the line through the wrist: the least and the most
+    /// along the direction turned a quarter from +x towards +y.
+    pub across: [f64; 2],
+    /// The hand's area, without the arm, in pixels.
+    pub area: f64,
+    /// How much arm can be seen behind the wrist before a side of it leaves the picture or it ends.
+    pub arm: f64,
+    /// Whether the hand itself reaches the image border, so that part of it may not be seen.
+    pub cut_off: bool,
+    /// How little it looks like a hand: the squared Mahalanobis distance of its sections from those
+    /// of hands, about 11 for one.
+    pub strangeness: f64,
+    /// Which component of the mask it is, for [`HandFinder::isolate`].
+    pub component: usize,
+}
+
+/// The most wrists that are considered along one arm: the finger of a hand that points may look like
+/// a hand of its own.
+const WRISTS: usize = 3;
+
+/// A section that may be a wrist.
+struct Candidate {
+    section: usize,
+    evidence: f64,
+    strangeness: f64,
+}
+
+/// Finds hands in masks, one after another in the same memory.
+#[derive(Debug, Clone, Default)]
+pub struct HandFinder {
+    majority: Majority,
+    cleaned: GrayImage,
+    components: Components,
+    grid: Grid,
+    geodesic: Geodesic,
+    sections: Sections,
+}
+
+impl HandFinder {
+    /// Everything in a mask of any size that may be a hand, the likeliest first: each component of
+    /// at least [`Cleanup::min_hand`], with its arm coming from each place where it crosses the image
+    /// border or, where it crosses none, from either of its ends, and with its wrist at each of the
+    /// few likeliest places along the arm. Speckle is removed first.
+    ///
+    /// # Errors
+    /// Unusable `cleanup`, an image without pixels, or nothing as large as a hand.
+    pub fn find(
+        &mut self,
+        mask: &GrayImage,
+        cleanup: &Cleanup,
+        model: &WristModel,
+    ) -> Result<Vec<LocatedHand>> {
+        let mut hands = Vec::new();
+        for component in self.components_of(mask, cleanup)? {
+            self.load(component);
+            for source in self.arm_ends() {
+                hands.extend(self.hands_from(&source, component, model));
+            }
+        }
+        hands.sort_by(|a, b| a.strangeness.total_cmp(&b.strangeness));
+        if hands.is_empty() { Err(Error::NoHand) } else { Ok(hands) }
+    }
+
+    /// The mask of the last search with nothing but a hand's component, and its arm.
+    pub fn isolate(&self, hand: &LocatedHand) -> GrayImage {
+        let mut mask = self.cleaned.clone();
+        let width = mask.width() as usize;
+        let others = |component: usize, _| component != hand.component;
+        self.components.paint(&mut mask, width, 0, others);
+        mask
+    }
+
+    /// The sections of the largest component from its longest border crossing, and which of them
+    /// passes nearest to a wrist.
+    pub(crate) fn sections_at(
+        &mut self,
+        mask: &GrayImage,
+        wrist: [f64; 2],
+    ) -> Result<Option<(&Sections, usize)>> {
+        self.components_of(mask, &Cleanup::default())?;
+        let Some((largest, _)) = self.components.largest() else { return Ok(None) };
+        self.load(largest);
+        let crossing = self.grid.crossings().into_iter().max_by_key(Vec::len);
+        let (Some(crossing), Some(cell)) = (crossing, self.grid.nearest(wrist)) else {
+            return Ok(None);
+        };
+        self.geodesic.measure(&self.grid, &crossing);
+        self.sections.fill(&self.grid, &self.geodesic);
+        Ok(self.geodesic.distance(cell).map(|distance| (&self.sections, distance as usize)))
+    }
+
+    /// Cleans the mask and gives the components that are large enough.
+    fn components_of(&mut self, mask: &GrayImage, cleanup: &Cleanup) -> Result<Vec<usize>> {
+        cleanup.check()?;
+        let (width, height) = mask.dimensions();
+        if width == 0 || height == 0 {
+            return Err(Error::ImageTooSmall { width, height, minimum: 1 });
+        }
+        if self.cleaned.dimensions() != mask.dimensions() {
+            self.cleaned = GrayImage::new(width, height);
+        }
+        let (columns, radius) = (width as usize, cleanup.majority_radius as usize);
+        self.majority.vote(mask, columns, radius, &mut self.cleaned);
+        self.components.label(&self.cleaned, columns, Class::Hand);
+        let needed = cleanup.needed(mask.len());
+        let large: Vec<usize> = self.components.at_least(needed).collect();
+        if large.is_empty() {
+            let pixels = self.components.largest().map_or(0, |(_, region)| region.area);
+            return Err(Error::EmptyMask { pixels, needed });
+        }
+        Ok(large)
+    }
+
+    fn load(&mut self, component: usize) {
+        let (width, height) = self.cleaned.dimensions();
+        let spans = self.components.spans(component);
+        self.grid.fill(&spans, (width as usize, height as usize));
+    }
+
+    /// Where the arm may come from.
+    fn arm_ends(&mut self) -> Vec<Vec<usize>> {
+        let crossings = self.grid.crossings();
+        if !crossings.is_empty() {
+            return crossings;
+        }
+        let Some(any) = self.grid.cells().next() else { return Vec::new() };
+        let one = self.geodesic.measure(&self.grid, &[any]);
+        let other = self.geodesic.measure(&self.grid, &[one]);
+        vec![vec![one], vec![other]]
+    }
+
+    /// What may be the hand of the grid's component whose arm comes from some of its cells: the
+    /// likeliest wrists, at least a width apart.
+    fn hands_from(
+        &mut self,
+        source: &[usize],
+        component: usize,
+        model: &WristModel,
+    ) -> Vec<LocatedHand> {
+        self.geodesic.measure(&self.grid, source);
+        self.sections.fill(&self.grid, &self.geodesic);
+        let sections = &self.sections;
+        let mut candidates: Vec<Candidate> = (0..sections.count())
+            .filter_map(|section| {
+                let features = sections.features(section)?;
+                let (evidence, strangeness) =
+                    (model.evidence(&features), model.strangeness(&features));
+                Some(Candidate { section, evidence, strangeness })
+            })
+            .collect();
+        candidates.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        let mut chosen: Vec<Candidate> = Vec::with_capacity(WRISTS);
+        for candidate in candidates {
+            let apart = |other: &Candidate| {
+                let width = sections.width(other.section).max(sections.width(candidate.section));
+                candidate.section.abs_diff(other.section) as f64 >= width
+            };
+            if chosen.len() < WRISTS && chosen.iter().all(apart) {
+                chosen.push(candidate);
+            }
+        }
+        chosen.iter().filter_map(|candidate| self.hand_at(candidate, component)).collect()
+    }
+
+    /// The hand ahead of a section.
+    fn hand_at(&self, candidate: &Candidate, component: usize) -> Option<LocatedHand> {
+        let section = candidate.section;
+        let direction = self.direction(section)?;
+        let (wrist, scale) = (self.sections.centres[section], self.grid.scale as f64);
+        let mut hand = LocatedHand {
+            wrist,
+            direction,
+            width: self.sections.width(section) * scale,
+            length: 0.0,
+            across: [0.0; 2],
+            area: 0.0,
+            arm: self.visible_arm(section) * scale,
+            cut_off: false,
+            strangeness: candidate.strangeness,
+            component,
+        };
+        let ahead = |&cell: &usize| {
+            self.geodesic.distance(cell).is_some_and(|distance| distance >= section as f64)
+        };
+        for cell in self.grid.cells().filter(ahead) {
+            let [x, y] = self.grid.position(cell);
+            let [dx, dy] = [x - wrist[0], y - wrist[1]];
+            let along = dx * direction[0] + dy * direction[1];
+            let side = dy * direction[0] - dx * direction[1];
+            hand.length = hand.length.max(along + 0.5 * scale);
+            hand.across[0] = hand.across[0].min(side - 0.5 * scale);
+            hand.across[1] = hand.across[1].max(side + 0.5 * scale);
+            hand.area += self.grid.area(cell);
+            hand.cut_off |= self.grid.at_border[cell] && along > 0.5 * hand.width;
+        }
+        (hand.length > 0.0).then_some(hand)
+    }
+
+    /// The direction of the arm at a section: that in which the middles of the sections move, over
+    /// one width behind it or, where less can be seen, ahead of it.
+    fn direction(&self, section: usize) -> Option<[f64; 2]> {
+        let width = self.sections.width(section);
+        let behind = self.visible_arm(section).min(width);
+        let ahead = 0.25 * width + 0.5 * (width - behind);
+        let first = section - behind as usize;
+        let last = (section + ahead as usize).min(self.sections.count() - 1);
+        let centres = &self.sections.centres[first..=last];
+        let middle = 0.5 * (centres.len() - 1) as f64;
+        let moved = |axis: usize| -> f64 {
+            centres.iter().zip(0..).map(|(c, k)| (f64::from(k) - middle) * c[axis]).sum()
+        };
+        let moved = [moved(0), moved(1)];
+        let length = moved[0].hypot(moved[1]);
+        (length > 0.0).then(|| moved.map(|component| component / length))
+    }
+
+    /// How many sections behind one are whole: the arm's end has no section across, and the image
+    /// border cuts some.
+    fn visible_arm(&self, section: usize) -> f64 {
+        let behind = self.sections.at_border[..section].iter().rev();
+        let whole = behind.take_while(|&&at_border| !at_border).count();
+        if whole == section {
+            // The arm ends within the picture, and its sections begin at a corner of its end.
+            return (section as f64 - 0.5 * self.sections.width(section)).max(0.0);
+        }
+        whole as f64
+    }
+}
