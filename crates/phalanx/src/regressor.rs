@@ -2,8 +2,8 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Bridges, Cascade, Columns, Fit, ForwardSelection, Kernel, KernelRidge, Nystrom, Pilot, Ridge,
-    Sums, Tipping,
+    Bridges, Cascade, Columns, Fit, ForwardSelection, Kernel, KernelRidge, MultivariateRvm,
+    Nystrom, Pilot, Ridge, Sums, Tipping,
 };
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +26,8 @@ pub enum Regressor {
     Forward(ForwardSelection),
     /// Tipping's relevance vector machine, one per output.
     Tipping(Tipping),
+    /// The relevance vector machine whose outputs share their vectors.
+    MultivariateRvm(MultivariateRvm),
     /// Dense kernel ridge regression.
     KernelRidge(KernelRidge),
     /// Kernel ridge regression on Gaussians of some of the samples.
@@ -53,9 +55,14 @@ impl Regressor {
             Self::Forward(fitter) if few || fitter.kernel == Kernel::Linear => fitter.fit(x, y),
             Self::Tipping(fitter) => fitter.fit(x, y),
             Self::KernelRidge(fitter) => fitter.fit(x, y),
-            Self::Bridges(_) | Self::Cascade(_) | Self::Forward(_) | Self::Nystrom(_) => {
-                return self.fit_to_sums_of(x, y);
+            Self::MultivariateRvm(fitter) if few || fitter.kernel == Kernel::Linear => {
+                fitter.fit(x, y)
             }
+            Self::Bridges(_)
+            | Self::Cascade(_)
+            | Self::Forward(_)
+            | Self::MultivariateRvm(_)
+            | Self::Nystrom(_) => return self.fit_to_sums_of(x, y),
         };
         Ok(fit?)
     }
@@ -70,6 +77,7 @@ impl Regressor {
             Self::Ridge(_) => Ok(Kernel::Linear),
             Self::Bridges(fitter) => Ok(fitter.kernel),
             Self::Forward(fitter) => Ok(fitter.kernel),
+            Self::MultivariateRvm(fitter) => Ok(fitter.kernel),
             Self::Nystrom(fitter) => Ok(Kernel::Gaussian(fitter.width)),
             Self::Cascade(_) => {
                 not("both", "its features are selected before samples can be summed")
@@ -88,6 +96,7 @@ impl Regressor {
             Self::Ridge(fitter) => fitter.fit_sums(columns, sums)?,
             Self::Bridges(fitter) => fitter.fit_sums(columns, sums)?,
             Self::Forward(fitter) => fitter.fit_sums(columns, sums)?,
+            Self::MultivariateRvm(fitter) => fitter.fit_sums(columns, sums)?,
             Self::Nystrom(fitter) => fitter.fit_sums(columns, sums)?,
             Self::Cascade(_) | Self::Tipping(_) | Self::KernelRidge(_) => {
                 unreachable!("refused above")

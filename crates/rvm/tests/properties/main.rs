@@ -5,6 +5,7 @@ mod bridges;
 mod equivariance;
 mod forward;
 mod kernel_ridge;
+mod multivariate;
 mod nystrom;
 mod parts;
 mod problems;
