@@ -27,6 +27,7 @@ mod report;
 mod saturation;
 mod scale;
 mod scene_list;
+mod selection;
 mod sets;
 mod skin_model;
 mod split;
@@ -62,6 +63,8 @@ enum Command {
     /// Test on what was never seen: other motion, hands, cameras, silhouettes.
     #[command(name = "eval-held-out")]
     EvalHeldOut(held_out::Arguments),
+    /// Compare ways of choosing which samples to keep, and write docs/selection.md.
+    Selection(selection::Arguments),
     /// Put one of the paper's figures or claims to the test.
     Experiment(experiments::Arguments),
     /// Run every experiment and write one page that a reader of the paper can follow.
@@ -105,6 +108,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::Merge(arguments) => merge::run(arguments)?,
         Command::EvalTable1(arguments) => table1::run(arguments)?,
         Command::EvalHeldOut(arguments) => return held_out::run(arguments),
+        Command::Selection(arguments) => selection::run(arguments)?,
         Command::Experiment(arguments) => experiments::run(arguments)?,
         Command::Report(arguments) => return report::run(arguments),
         Command::Headline(arguments) => headline::run(arguments)?,
