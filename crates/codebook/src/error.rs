@@ -83,4 +83,12 @@ pub enum Error {
         /// How many centres there are.
         centres: usize,
     },
+    /// An output of another length than the code's.
+    #[error("an output of length {length} for a code of {dim} numbers")]
+    CodeLength {
+        /// The output's length.
+        length: usize,
+        /// The code's.
+        dim: usize,
+    },
 }

@@ -1,7 +1,7 @@
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
 
-use crate::{Codebook, Error, Result, packed::Support, samples};
+use crate::{Codebook, Coding, Error, Result, packed::Support, samples};
 
 /// How samples vote.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -18,13 +18,36 @@ impl Default for Voting {
     }
 }
 
-/// The memory that voting needs, kept from one call to the next.
+/// The memory that coding needs, kept from one call to the next.
 #[derive(Debug, Clone, Default)]
 pub struct Scratch {
-    support: Support,
-    distances: Vec<f32>,
+    pub(crate) support: Support,
+    pub(crate) distances: Vec<f32>,
     ranks: Vec<Rank>,
     weights: Vec<f64>,
+}
+
+/// Soft votes into a codebook's centres, as a coding like any other.
+#[derive(Debug, Clone, Copy)]
+pub struct SoftCounts<'a> {
+    /// The centres.
+    pub codebook: &'a Codebook,
+    /// How samples vote.
+    pub voting: Voting,
+}
+
+impl Coding for SoftCounts<'_> {
+    fn bins(&self) -> usize {
+        self.codebook.dim()
+    }
+
+    fn dim(&self) -> usize {
+        self.codebook.len()
+    }
+
+    fn encode(&self, samples: &[f32], scratch: &mut Scratch, out: &mut [f64]) -> Result<()> {
+        self.codebook.soft_assign(samples, self.voting, scratch, out)
+    }
 }
 
 impl Codebook {

@@ -1,8 +1,9 @@
 //! Intermediate fusion: each view's histogram, joined.
 
-use phalanx_codebook::{Codebook, Voting};
+use phalanx_codebook::{Codebook, SoftCounts, Voting};
 use serde::{Deserialize, Serialize};
 
+use crate::codes::join;
 use crate::{Error, Result, Scratch};
 
 /// The fitted codebooks of the views; joins the views' histograms into one vector x (§ 2 of the
@@ -86,20 +87,11 @@ impl Concatenation {
         scratch: &mut Scratch,
         x: &mut [f64],
     ) -> Result<()> {
-        if contexts.len() != self.views() {
-            return Err(Error::ViewCount { expected: self.views(), found: contexts.len() });
-        }
-        if x.len() != self.dim() {
-            return Err(Error::OutputLength { expected: self.dim(), found: x.len() });
-        }
-        let mut rest = x;
-        for (view, (codebook, contexts)) in self.codebooks.iter().zip(contexts).enumerate() {
-            let part;
-            (part, rest) = rest.split_at_mut(codebook.len());
-            codebook
-                .soft_assign(contexts.as_ref(), self.voting, &mut scratch.voting, part)
-                .map_err(|reason| Error::View { view, reason })?;
-        }
-        Ok(())
+        let views: Vec<SoftCounts<'_>> = self
+            .codebooks
+            .iter()
+            .map(|codebook| SoftCounts { codebook, voting: self.voting })
+            .collect();
+        join(views.iter(), contexts, scratch, x)
     }
 }

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod codes;
 mod combination;
 mod concatenation;
 mod error;
@@ -7,6 +8,7 @@ mod pooled;
 mod scratch;
 mod vocabulary;
 
+pub use codes::Codes;
 pub use combination::{Estimate, inverse_variance, mean};
 pub use concatenation::Concatenation;
 pub use error::{Error, Result};

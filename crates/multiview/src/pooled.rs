@@ -83,11 +83,11 @@ impl Pooled {
         if x.len() != self.dim() {
             return Err(Error::OutputLength { expected: self.dim(), found: x.len() });
         }
-        let Scratch { voting, pool } = scratch;
+        let Scratch { coding, pool } = scratch;
         pool.clear();
         for view in contexts {
             pool.extend_from_slice(view.as_ref());
         }
-        self.codebook.soft_assign(pool, self.voting, voting, x).map_err(Error::Pooled)
+        self.codebook.soft_assign(pool, self.voting, coding, x).map_err(Error::Pooled)
     }
 }

@@ -3,7 +3,7 @@
 /// Memory that describing one sample after another uses again.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    pub(crate) voting: phalanx_codebook::Scratch,
+    pub(crate) coding: phalanx_codebook::Scratch,
     /// All views' shape contexts, one after the other.
     pub(crate) pool: Vec<f32>,
 }

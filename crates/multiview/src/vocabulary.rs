@@ -47,7 +47,7 @@ impl Vocabulary {
         let codebooks = (0..views).map(|view| {
             let clustering = KMeans {
                 centres: self.centres / views + usize::from(view < self.centres % views),
-                seed: self.clustering.seed.wrapping_mul(1_000_003).wrapping_add(view as u64),
+                seed: seed_of_view(self.clustering.seed, view),
                 ..self.clustering
             };
             let of_view = contexts.iter().map(|sample| sample.as_ref()[view].as_ref());
@@ -75,8 +75,13 @@ impl Vocabulary {
     }
 }
 
+/// A clustering seed for each view, which follows from one for all.
+pub(crate) fn seed_of_view(seed: u64, view: usize) -> u64 {
+    seed.wrapping_mul(1_000_003).wrapping_add(view as u64)
+}
+
 /// The number of views, once every sample has as many and each is whole shape contexts.
-fn check<S: AsRef<[V]>, V: AsRef<[f32]>>(contexts: &[S], dim: usize) -> Result<usize> {
+pub(crate) fn check<S: AsRef<[V]>, V: AsRef<[f32]>>(contexts: &[S], dim: usize) -> Result<usize> {
     let views = contexts.first().map_or(0, |sample| sample.as_ref().len());
     if views == 0 {
         return Err(Error::NoViews);
@@ -95,7 +100,7 @@ fn check<S: AsRef<[V]>, V: AsRef<[f32]>>(contexts: &[S], dim: usize) -> Result<u
 }
 
 /// At most `most` of the shape contexts, evenly spaced.
-fn evenly_spaced<'a>(
+pub(crate) fn evenly_spaced<'a>(
     contexts: impl Iterator<Item = &'a [f32]> + Clone,
     dim: usize,
     most: usize,

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::model::Basis;
 use crate::problem::Problem;
 use crate::standardiser::Standardiser;
-use crate::{Error, Kernel, Result, check, kernel, linalg};
+use crate::{Error, Kernel, Result, Width, check, kernel, linalg};
 
 /// Most basis columns of a dense solver: one square matrix over them takes 0.8 GB.
 const MOST_COLUMNS: usize = 10_000;
@@ -68,15 +68,31 @@ impl Columns {
         Self::over(pilot, kernel, &all)
     }
 
+    /// A Gaussian on each sample of the pilot, over inputs whose proportions mean something, such as
+    /// those of a learnt [`Metric`](crate::Metric): all are divided by one number.
+    pub fn in_proportion(pilot: &Pilot<'_>, width: Width) -> Result<Self> {
+        let problem = Problem::in_proportion(pilot.x, pilot.y)?;
+        Self::on_pilot(&problem, problem.features(), Kernel::Gaussian(width), pilot)
+    }
+
     /// Columns over the inputs in `features` (ascending) that vary.
     pub fn over(pilot: &Pilot<'_>, kernel: Kernel, features: &[usize]) -> Result<Self> {
         let problem = Problem::new(pilot.x, pilot.y)?;
-        check::length("indices of the pilot's samples", pilot.x.ncols(), pilot.samples.len())?;
         check::features(features, pilot.x.nrows())?;
         let varying = problem.features();
         let features = varying.into_iter().filter(|f| features.binary_search(f).is_ok()).collect();
+        Self::on_pilot(&problem, features, kernel, pilot)
+    }
+
+    fn on_pilot(
+        problem: &Problem,
+        features: Vec<usize>,
+        kernel: Kernel,
+        pilot: &Pilot<'_>,
+    ) -> Result<Self> {
+        check::length("indices of the pilot's samples", pilot.x.ncols(), pilot.samples.len())?;
         let places: Vec<usize> = (0..pilot.samples.len()).collect();
-        let mut columns = Self::of(&problem, features, kernel, &places)?;
+        let mut columns = Self::of(problem, features, kernel, &places)?;
         if let Some(gaussians) = &mut columns.gaussians {
             gaussians.samples = pilot.samples.to_vec();
         }

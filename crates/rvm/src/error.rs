@@ -134,6 +134,12 @@ pub enum Error {
         /// Its size.
         size: usize,
     },
+    /// The eigenvalues of a symmetric matrix could not be found.
+    #[error("the eigenvalues of a {size}×{size} matrix do not converge")]
+    Eigenvalues {
+        /// Its size.
+        size: usize,
+    },
     /// The parts of a model do not fit together.
     #[error("model parts: {field} {problem}")]
     Parts {

@@ -1,8 +1,10 @@
 //! The few dense operations in use, each sequential or cut into fixed blocks, so that no result
 //! depends on the number of threads.
 
+use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{self, LltRegularization};
+use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_inverse::invert_lower_triangular;
 use faer::linalg::triangular_solve::{
@@ -11,6 +13,8 @@ use faer::linalg::triangular_solve::{
 use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, Mat, MatRef, Par, Spec};
 use rayon::prelude::*;
+
+use crate::{Error, Result};
 
 /// Columns of a product that one task computes.
 const BLOCK: usize = 96;
@@ -57,6 +61,31 @@ pub(crate) fn cholesky(mut a: Mat<f64>) -> Option<Mat<f64>> {
         a.col_as_slice_mut(j)[..j].fill(0.0);
     }
     Some(a)
+}
+
+/// Eigenvalues of a symmetric matrix, the largest first, and their eigenvectors of length 1.
+pub(crate) struct Eigen {
+    pub(crate) values: Vec<f64>,
+    /// One in each column.
+    pub(crate) vectors: Mat<f64>,
+}
+
+/// Decomposes a symmetric matrix.
+pub(crate) fn eigen(a: Mat<f64>) -> Result<Eigen> {
+    let n = a.nrows();
+    let params = Spec::default();
+    let compute = ComputeEigenvectors::Yes;
+    let scratch = self_adjoint_evd_scratch::<f64>(n, compute, Par::Seq, params);
+    let mut memory = MemBuffer::new(scratch);
+    let (mut values, mut vectors) = (Diag::zeros(n), Mat::zeros(n, n));
+    let stack = MemStack::new(&mut memory);
+    let into = Some(vectors.as_mut());
+    self_adjoint_evd(a.as_ref(), values.as_mut(), into, Par::Seq, stack, params)
+        .map_err(|_| Error::Eigenvalues { size: n })?;
+    // They come ascending.
+    let values = values.column_vector().iter().rev().copied().collect();
+    let vectors = Mat::from_fn(n, n, |i, k| vectors[(i, n - 1 - k)]);
+    Ok(Eigen { values, vectors })
 }
 
 /// Inverse of a lower triangular matrix.

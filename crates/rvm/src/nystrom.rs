@@ -28,6 +28,18 @@ pub enum Penalty {
     CrossValidated(Vec<f64>),
 }
 
+/// What a Nyström regression's standard deviation knows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Deviation {
+    /// The noise, and how sure the weights are at the input: p² numbers, all of which a prediction
+    /// reads.
+    Posterior,
+    /// One number for each target, the deviation of generalised cross-validation: what a left-out
+    /// sample's error is on average.
+    CrossValidated,
+}
+
 /// Kernel ridge regression with Gaussians on p of the samples and an unpenalised bias, fitted to
 /// all of them: the "subset of regressors" (Rasmussen and Williams 2006, section 8.3.1; Nyström's
 /// approximation).
@@ -49,6 +61,8 @@ pub enum Penalty {
 pub struct Nystrom {
     /// Width of the kernel.
     pub width: Width,
+    /// What the standard deviation knows.
+    pub deviation: Deviation,
     /// Penalty. In a Gaussian process λ is the noise's variance over the signal's, whatever the
     /// number of samples: the default grid goes from next to no noise (10⁻⁴) to hardly any signal
     /// (10).
@@ -58,7 +72,11 @@ pub struct Nystrom {
 impl Default for Nystrom {
     fn default() -> Self {
         let grid = (-4..=1).map(|e| 10_f64.powi(e)).collect();
-        Self { width: Width::Scatter(1.0), penalty: Penalty::CrossValidated(grid) }
+        Self {
+            width: Width::Scatter(1.0),
+            deviation: Deviation::Posterior,
+            penalty: Penalty::CrossValidated(grid),
+        }
     }
 }
 
@@ -91,7 +109,7 @@ impl Nystrom {
         let best = (0..grid.len()).min_by(|&a, &b| errors[a].total_cmp(&errors[b]));
         let lambda = grid[best.unwrap_or(0)];
         let trace = Trace { converged: true, objective: errors };
-        let model = whitened.model(lambda)?;
+        let model = whitened.model(lambda, self.deviation)?;
         Ok(Fit { model, report: Report::new(vec![trace], Some(lambda)) })
     }
 
@@ -152,18 +170,28 @@ impl<'a> Whitened<'a> {
         samples * residual.max(0.0) / (left * left * targets)
     }
 
-    fn model(&self, lambda: f64) -> Result<Model> {
+    fn model(&self, lambda: f64, deviation: Deviation) -> Result<Model> {
         let solved = self.solve(lambda)?;
         let (mut factor, used) = solved.posterior();
         let lower = self.lower.as_ref();
         let mut weights = solved.weights;
         linalg::upper_solve(lower.transpose(), &mut weights);
-        // M of the columns themselves is M L⁻¹.
-        factor = factor.transpose().to_owned();
-        linalg::upper_solve(lower.transpose(), &mut factor);
         let kept: Vec<usize> = (0..lower.ncols()).collect();
-        let noise = penalised::noise(self.equations, &kept, weights.as_ref(), used);
-        let factor = Factor::pack(kept.clone(), factor.transpose());
+        let mut noise = penalised::noise(self.equations, &kept, weights.as_ref(), used);
+        let factor = match deviation {
+            Deviation::Posterior => {
+                // M of the columns themselves is M L⁻¹.
+                factor = factor.transpose().to_owned();
+                linalg::upper_solve(lower.transpose(), &mut factor);
+                Factor::pack(kept.clone(), factor.transpose())
+            }
+            Deviation::CrossValidated => {
+                let samples = self.equations.samples() as f64;
+                let left = (samples / (samples - 1.0 - used).max(1.0)).sqrt();
+                noise.iter_mut().for_each(|noise| *noise *= left);
+                Factor { columns: Vec::new(), packed: Vec::new() }
+            }
+        };
         let posterior = Posterior::Weights(vec![factor]);
         Ok(equations::model(self.equations, &kept, weights.as_ref(), &noise, posterior))
     }

@@ -16,7 +16,15 @@ pub(crate) struct Problem {
 
 impl Problem {
     pub(crate) fn new(x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Self> {
-        let inputs = Standardiser::fit(x)?;
+        Self::scaled(Standardiser::fit(x)?, x, y)
+    }
+
+    /// The inputs keep their proportions.
+    pub(crate) fn in_proportion(x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Self> {
+        Self::scaled(Standardiser::in_proportion(x)?, x, y)
+    }
+
+    fn scaled(inputs: Standardiser, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Self> {
         check::matrix("y", y)?;
         check::length("columns (samples) of y", x.ncols(), y.ncols())?;
         let targets = Standardiser::fit(y)?;

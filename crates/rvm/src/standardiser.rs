@@ -30,6 +30,17 @@ impl Standardiser {
         Ok(Self { mean, scale })
     }
 
+    /// Measures the rows of `x` as [`fit`](Self::fit) does, but divides all that vary by one number,
+    /// so that they keep their proportions: their mean variance becomes 1.
+    pub fn in_proportion(x: MatRef<'_, f64>) -> Result<Self> {
+        let mut each = Self::fit(x)?;
+        let varying = each.varying();
+        let total: f64 = each.scale.iter().map(|scale| scale * scale).sum();
+        let common = (total / varying.len().max(1) as f64).sqrt();
+        varying.into_iter().for_each(|row| each.scale[row] = common);
+        Ok(each)
+    }
+
     /// Puts one together from the mean and the standard deviation (0: constant) of each row.
     pub fn from_parts(mean: Vec<f64>, scale: Vec<f64>) -> Result<Self> {
         check::length("scales", mean.len(), scale.len())?;

@@ -20,6 +20,9 @@ pub struct Scratch {
     /// The posterior's columns, and M times them.
     chosen: Vec<f64>,
     spread: Vec<f64>,
+    /// A projection's input in single precision, and its output.
+    pub(crate) single: Vec<f32>,
+    pub(crate) projected: Vec<f64>,
 }
 
 impl Model {

@@ -1,0 +1,64 @@
+use pulp::Arch;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    Codebook, Coding, Result, Scratch, codebook::first_equal, coding::check_length, samples,
+};
+
+/// The vector of locally aggregated descriptors: what is left of the samples when their nearest
+/// centres are taken away, summed for each centre (Jégou, Douze, Schmid and Pérez, 2010).
+///
+/// Counts tell how many samples are near a centre, residuals to which side of it they lie, so that
+/// few centres say much. As Jégou et al. (2012) advise, of each sum the root is taken, its sign
+/// kept, so that no frequent sample drowns the others, and the whole has length 1.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Vlad {
+    /// The centres; their scale is not used.
+    pub codebook: Codebook,
+}
+
+impl Coding for Vlad {
+    fn bins(&self) -> usize {
+        self.codebook.dim()
+    }
+
+    /// K centres times the bins.
+    fn dim(&self) -> usize {
+        self.codebook.centres().len()
+    }
+
+    /// Centre by centre. Samples that are all at their centres have a code of zeros.
+    fn encode(&self, samples: &[f32], scratch: &mut Scratch, out: &mut [f64]) -> Result<()> {
+        let bins = self.bins();
+        check_length(out, self.dim())?;
+        samples::check("sample", samples, bins)?;
+        out.fill(0.0);
+        let Scratch { support, distances, .. } = scratch;
+        let arch = Arch::new();
+        for sample in samples.chunks_exact(bins) {
+            support.find(sample);
+            let smallest = self.codebook.packed.whole().compare(arch, support, distances);
+            let start = first_equal(distances, smallest) * bins;
+            let centre = &self.codebook.centres()[start..start + bins];
+            for ((sum, &height), &of_centre) in
+                out[start..start + bins].iter_mut().zip(sample).zip(centre)
+            {
+                *sum += f64::from(height) - f64::from(of_centre);
+            }
+        }
+        normalise(out);
+        Ok(())
+    }
+}
+
+/// Signed roots, brought to length 1. Residuals are of f32, so that sums below its rounding are
+/// rounding themselves.
+fn normalise(code: &mut [f64]) {
+    let squared: f64 = code.iter().map(|value| value.abs()).sum();
+    let length = squared.sqrt();
+    for value in code {
+        let root = value.abs().sqrt().copysign(*value);
+        *value = if squared > f64::from(f32::EPSILON) { root / length } else { 0.0 };
+    }
+}
