@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod bridges;
+mod conditional;
 mod equivariance;
 mod forward;
 mod kernel_ridge;
