@@ -1,9 +1,8 @@
 //! Intermediate fusion by any coding: each view's code, joined.
 
-use phalanx_codebook::{AnyCoding, Coding, KMeans, Vlad};
+use phalanx_codebook::{AnyCoding, Coding};
 use serde::{Deserialize, Serialize};
 
-use crate::vocabulary::{check, evenly_spaced, seed_of_view};
 use crate::{Concatenation, Error, Result, Scratch};
 
 /// The codings of the views, whose codes are one after the other the descriptor x. With soft counts
@@ -30,32 +29,6 @@ impl Codes {
             }
         }
         Ok(Self { views })
-    }
-
-    /// Learns a codebook of so many centres for each view, to code by the residuals to them.
-    /// `contexts` as in [`Vocabulary::fit`](crate::Vocabulary::fit); at most `most_samples` shape
-    /// contexts a view are clustered.
-    ///
-    /// # Errors
-    /// As of [`Vocabulary::fit`](crate::Vocabulary::fit).
-    pub fn fit_vlad<S, V>(
-        clustering: &KMeans,
-        most_samples: usize,
-        contexts: &[S],
-        dim: usize,
-    ) -> Result<Self>
-    where
-        S: AsRef<[V]>,
-        V: AsRef<[f32]>,
-    {
-        let views = (0..check(contexts, dim)?).map(|view| {
-            let clustering = KMeans { seed: seed_of_view(clustering.seed, view), ..*clustering };
-            let of_view = contexts.iter().map(|sample| sample.as_ref()[view].as_ref());
-            let fit = clustering.fit(&evenly_spaced(of_view, dim, most_samples), dim);
-            let coding = fit.map(|fit| AnyCoding::Vlad(Vlad { codebook: fit.codebook }));
-            coding.map_err(|reason| Error::View { view, reason })
-        });
-        Self::from_parts(views.collect::<Result<_>>()?)
     }
 
     /// The codings, one per view.

@@ -1,7 +1,7 @@
 //! Working memory.
 
 /// Memory that describing one sample after another uses again.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Scratch {
     pub(crate) coding: phalanx_codebook::Scratch,
     /// All views' shape contexts, one after the other.

@@ -1,8 +1,8 @@
 //! How the codebooks of the views are learnt.
 
-use phalanx_codebook::{KMeans, Voting};
+use phalanx_codebook::{AnyCoding, Codebook, KMeans, Vlad, Voting};
 
-use crate::{Concatenation, Error, Pooled, Result};
+use crate::{Codes, Concatenation, Error, Pooled, Result};
 
 /// The codebooks to learn: the paper's 90 centres, shared as evenly as they go by the views, so that
 /// descriptors of one view and of three have the same length (§ 2); or all in one codebook, for
@@ -43,18 +43,43 @@ impl Vocabulary {
         S: AsRef<[V]>,
         V: AsRef<[f32]>,
     {
+        Concatenation::from_parts(self.codebooks(contexts, dim)?, self.voting)
+    }
+
+    /// Learns a codebook for each view, to code shape contexts by their residuals to its centres;
+    /// `contexts` as in [`fit`](Self::fit).
+    ///
+    /// # Errors
+    /// As of [`fit`](Self::fit).
+    pub fn fit_residuals<S, V>(&self, contexts: &[S], dim: usize) -> Result<Codes>
+    where
+        S: AsRef<[V]>,
+        V: AsRef<[f32]>,
+    {
+        let codebooks = self.codebooks(contexts, dim)?;
+        Codes::from_parts(
+            codebooks.into_iter().map(|codebook| AnyCoding::Vlad(Vlad { codebook })).collect(),
+        )
+    }
+
+    /// A codebook for each view.
+    fn codebooks<S, V>(&self, contexts: &[S], dim: usize) -> Result<Vec<Codebook>>
+    where
+        S: AsRef<[V]>,
+        V: AsRef<[f32]>,
+    {
         let views = check(contexts, dim)?;
         let codebooks = (0..views).map(|view| {
             let clustering = KMeans {
                 centres: self.centres / views + usize::from(view < self.centres % views),
-                seed: seed_of_view(self.clustering.seed, view),
+                seed: self.clustering.seed.wrapping_mul(1_000_003).wrapping_add(view as u64),
                 ..self.clustering
             };
             let of_view = contexts.iter().map(|sample| sample.as_ref()[view].as_ref());
             let fit = clustering.fit(&evenly_spaced(of_view, dim, self.most_samples), dim);
             fit.map(|fit| fit.codebook).map_err(|reason| Error::View { view, reason })
         });
-        Concatenation::from_parts(codebooks.collect::<Result<_>>()?, self.voting)
+        codebooks.collect()
     }
 
     /// Learns one codebook, of all the centres, from all views together; `contexts` as in
@@ -75,13 +100,8 @@ impl Vocabulary {
     }
 }
 
-/// A clustering seed for each view, which follows from one for all.
-pub(crate) fn seed_of_view(seed: u64, view: usize) -> u64 {
-    seed.wrapping_mul(1_000_003).wrapping_add(view as u64)
-}
-
 /// The number of views, once every sample has as many and each is whole shape contexts.
-pub(crate) fn check<S: AsRef<[V]>, V: AsRef<[f32]>>(contexts: &[S], dim: usize) -> Result<usize> {
+fn check<S: AsRef<[V]>, V: AsRef<[f32]>>(contexts: &[S], dim: usize) -> Result<usize> {
     let views = contexts.first().map_or(0, |sample| sample.as_ref().len());
     if views == 0 {
         return Err(Error::NoViews);
@@ -100,7 +120,7 @@ pub(crate) fn check<S: AsRef<[V]>, V: AsRef<[f32]>>(contexts: &[S], dim: usize) 
 }
 
 /// At most `most` of the shape contexts, evenly spaced.
-pub(crate) fn evenly_spaced<'a>(
+fn evenly_spaced<'a>(
     contexts: impl Iterator<Item = &'a [f32]> + Clone,
     dim: usize,
     most: usize,

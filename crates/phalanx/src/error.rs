@@ -78,6 +78,12 @@ pub enum Error {
         /// What was predicted for it, or its standard deviation.
         value: f64,
     },
+    /// A regressor that works from sums over scenes, and from nothing else.
+    #[error("{regressor} learns from scenes that stream by, not from descriptors at once")]
+    InShardsOnly {
+        /// The regressor.
+        regressor: &'static str,
+    },
     /// No pose to learn from, or only one.
     #[error("{found} training poses are too few: at least 2 are needed")]
     TooFewPoses {

@@ -3,11 +3,9 @@
 use glam::DVec3;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
-use phalanx_multiview::Concatenation;
-use phalanx_rvm::Model;
 use phalanx_segmentation::{Forearm, Silhouette};
 
-use crate::{Describer, Error, OrientationRule, Picture, Result};
+use crate::{Descriptor, Error, Picture, Regression, Result, descriptor};
 
 /// A pose estimator for one rig and one hand; see [`Training`](crate::Training) for how to get
 /// one.
@@ -15,9 +13,8 @@ use crate::{Describer, Error, OrientationRule, Picture, Result};
 pub struct Estimator {
     rig: Rig,
     hand: HandShape,
-    orientation: OrientationRule,
-    views: Concatenation,
-    model: Model,
+    descriptor: Descriptor,
+    regression: Regression,
 }
 
 /// What is known of a hand after looking at it.
@@ -43,9 +40,7 @@ pub struct Workspace {
 /// What a [`Workspace`] keeps besides the silhouettes.
 #[derive(Debug, Default)]
 struct Memory {
-    describer: Describer,
-    contexts: Vec<Vec<f32>>,
-    views: phalanx_multiview::Scratch,
+    description: descriptor::Memory,
     x: Vec<f64>,
     regression: phalanx_rvm::Scratch,
 }
@@ -66,28 +61,22 @@ impl Estimator {
     pub fn from_parts(
         rig: Rig,
         hand: HandShape,
-        orientation: OrientationRule,
-        views: Concatenation,
-        model: Model,
+        descriptor: Descriptor,
+        regression: impl Into<Regression>,
     ) -> Result<Self> {
         rig.validate()?;
         hand.validate()?;
+        descriptor.check(&rig)?;
+        let regression = regression.into();
         for (part, found, expected) in [
-            ("codebooks", views.views(), rig.cameras.len()),
-            ("regressor inputs", model.inputs(), views.dim()),
-            ("regressor outputs", model.outputs(), Dof::COUNT),
+            ("regressor inputs", regression.inputs(), descriptor.dim()),
+            ("regressor outputs", regression.outputs(), Dof::COUNT),
         ] {
             if found != expected {
                 return Err(Error::Mismatch { part, found, expected });
             }
         }
-        for (camera, codebook) in rig.cameras.iter().zip(views.codebooks()) {
-            let (found, expected) = (codebook.dim(), phalanx_shape_context::BINS);
-            if found != expected {
-                return Err(Error::CodebookBins { camera: camera.name.clone(), found, expected });
-            }
-        }
-        Ok(Self { rig, hand, orientation, views, model })
+        Ok(Self { rig, hand, descriptor, regression })
     }
 
     /// The cameras and the volume it was learnt for.
@@ -100,19 +89,14 @@ impl Estimator {
         &self.hand
     }
 
-    /// Which way its shape contexts are turned.
-    pub fn orientation(&self) -> OrientationRule {
-        self.orientation
-    }
-
-    /// Its codebooks.
-    pub fn views(&self) -> &Concatenation {
-        &self.views
+    /// What it reads of the silhouettes.
+    pub fn descriptor(&self) -> &Descriptor {
+        &self.descriptor
     }
 
     /// Its regressor.
-    pub fn model(&self) -> &Model {
-        &self.model
+    pub fn regression(&self) -> &Regression {
+        &self.regression
     }
 
     /// Estimates the pose from one picture per camera, in the order of the rig's cameras.
@@ -131,6 +115,7 @@ impl Estimator {
         for ((view, &picture), silhouette) in pictures.iter().enumerate().zip(&mut *silhouettes) {
             self.check_shape(view, picture.size())?;
             memory
+                .description
                 .describer
                 .silhouette(picture, silhouette)
                 .map_err(|reason| Error::Silhouette { camera: self.camera(view), reason })?;
@@ -154,15 +139,8 @@ impl Estimator {
 
     /// The estimate from one silhouette per camera.
     fn look_at(&self, silhouettes: &[Silhouette], memory: &mut Memory) -> Result<Estimate> {
-        let Memory { describer, contexts, .. } = memory;
-        contexts.resize_with(silhouettes.len(), Vec::new);
-        for ((view, silhouette), kept) in silhouettes.iter().enumerate().zip(contexts) {
-            let contexts = describer
-                .contexts(silhouette, self.orientation)
-                .map_err(|reason| Error::ShapeContext { camera: self.camera(view), reason })?;
-            kept.clear();
-            kept.extend_from_slice(contexts.values());
-        }
+        let Memory { description, x, .. } = memory;
+        self.descriptor.describe(&self.rig, silhouettes.iter(), description, x)?;
         let (pose, std) = self.regress(memory)?;
         let joints = self.hand.pose(&pose, &self.rig.volume.rest_frame()).joints;
         let forearms = silhouettes.iter().map(|silhouette| silhouette.forearm).collect();
@@ -193,11 +171,9 @@ impl Estimator {
     }
 
     fn regress(&self, memory: &mut Memory) -> Result<(Pose, [f64; Dof::COUNT])> {
-        let Memory { contexts, views, x, regression, .. } = memory;
-        x.resize(self.views.dim(), 0.0);
-        self.views.describe(contexts, views, x)?;
+        let Memory { x, regression, .. } = memory;
         let (mut pose, mut std) = (Pose::REST, [0.0; Dof::COUNT]);
-        self.model.predict_into(x, regression, &mut pose.0, &mut std)?;
+        self.regression.predict_into(x, regression, &mut pose.0, &mut std)?;
         for dof in Dof::ALL {
             let numbers = [pose[dof], std[dof.index()]];
             if let Some(&value) = numbers.iter().find(|number| !number.is_finite()) {

@@ -1,8 +1,10 @@
 #![doc = include_str!("../README.md")]
 
 mod container;
+mod coverage;
 mod damage;
 mod describe;
+mod descriptor;
 mod error;
 mod estimator;
 mod histograms;
@@ -11,8 +13,10 @@ mod outline;
 mod overlay;
 mod part;
 mod picture;
+mod preset;
 mod progress;
 mod random;
+mod regression;
 mod regressor;
 mod scene;
 mod shard;
@@ -21,18 +25,21 @@ mod training_views;
 
 pub use damage::{Border, Damage, Hands};
 pub use describe::{Describer, OrientationRule, WORKING_SIZE, working_camera};
+pub use descriptor::{Beside, Descriptor, describe_scenes};
 pub use error::{Error, Result};
 pub use estimator::{Estimate, Estimator, Workspace};
 pub use histograms::{ViewCodebooks, describe_with};
 pub use overlay::{draw_overlay, working_window};
 pub use part::Part;
 pub use picture::{Picture, Segmenter};
+pub use preset::Preset;
 pub use progress::{Progress, Silent};
 pub use random::ItemRandom;
-pub use regressor::Regressor;
+pub use regression::Regression;
+pub use regressor::{LearntMetric, Regressor};
 pub use scene::{EvenlySpaced, NominalScenes, Scene, Scenes, View};
 pub use shard::Shard;
-pub use training::{Training, descriptors, targets};
+pub use training::{Description, Training, descriptors, targets};
 pub use training_views::{
     PoseContexts, SceneDescriber, describe_each, describe_poses, draw_silhouette,
 };

@@ -4,23 +4,28 @@ use std::borrow::Cow;
 
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
-use phalanx_multiview::Concatenation;
-use phalanx_rvm::{Model, ModelParts};
+use phalanx_rvm::{Model, ModelParts, Projected};
 use serde::{Deserialize, Serialize};
 
 use crate::container::Container;
-use crate::{Estimator, OrientationRule, Result};
+use crate::{Descriptor, Estimator, Regression, Result};
 
-const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 2 };
+const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 3 };
 
 /// What the payload holds.
 #[derive(Serialize, Deserialize)]
 struct Payload<'a> {
     rig: Cow<'a, Rig>,
     hand: Cow<'a, HandShape>,
-    orientation: OrientationRule,
-    views: Cow<'a, Concatenation>,
-    model: Cow<'a, ModelParts>,
+    descriptor: Cow<'a, Descriptor>,
+    regression: Stored<'a>,
+}
+
+/// A regression in plain numbers.
+#[derive(Serialize, Deserialize)]
+enum Stored<'a> {
+    Joint(Cow<'a, ModelParts>),
+    Projected(Cow<'a, Projected>),
 }
 
 impl Estimator {
@@ -32,9 +37,11 @@ impl Estimator {
         let payload = Payload {
             rig: Cow::Borrowed(self.rig()),
             hand: Cow::Borrowed(self.hand()),
-            orientation: self.orientation(),
-            views: Cow::Borrowed(self.views()),
-            model: Cow::Borrowed(self.model().parts()),
+            descriptor: Cow::Borrowed(self.descriptor()),
+            regression: match self.regression() {
+                Regression::Joint(model) => Stored::Joint(Cow::Borrowed(model.parts())),
+                Regression::Projected(models) => Stored::Projected(Cow::Borrowed(models)),
+            },
         };
         MODEL.encode(&payload)
     }
@@ -45,14 +52,11 @@ impl Estimator {
     /// Bytes that are no model, of another format, truncated, corrupt, or whose parts do not
     /// fit each other.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let Payload { rig, hand, orientation, views, model } = MODEL.decode(bytes)?;
-        let model = Model::from_parts(model.into_owned())?;
-        Self::from_parts(
-            rig.into_owned(),
-            hand.into_owned(),
-            orientation,
-            views.into_owned(),
-            model,
-        )
+        let Payload { rig, hand, descriptor, regression } = MODEL.decode(bytes)?;
+        let regression = match regression {
+            Stored::Joint(parts) => Model::from_parts(parts.into_owned())?.into(),
+            Stored::Projected(models) => Regression::Projected(models.into_owned()),
+        };
+        Self::from_parts(rig.into_owned(), hand.into_owned(), descriptor.into_owned(), regression)
     }
 }

@@ -3,19 +3,19 @@
 use faer::{Mat, MatRef};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape};
-use phalanx_multiview::Concatenation;
-use phalanx_rvm::{Columns, Pilot, Sums};
+use phalanx_rvm::{Columns, Metric, Pilot, Projected, Sums};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::container::Container;
-use crate::regressor::evenly_spaced;
+use crate::regressor::{columns_of, evenly_spaced};
 use crate::shard::{BLOCK, scenes_of};
 use crate::{
-    Error, Estimator, EvenlySpaced, OrientationRule, Progress, Regressor, Result, Scenes, Shard,
-    Training, ViewCodebooks, describe_each, describe_with, targets,
+    Descriptor, Error, Estimator, EvenlySpaced, Progress, Regression, Regressor, Result, Scenes,
+    Shard, Training, describe_each, describe_scenes, targets,
 };
 
-const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 1 };
+const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 2 };
 
 /// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
 /// and to [`finish`](Self::finish) the estimator. Its size depends on the regressor's columns and
@@ -27,7 +27,8 @@ pub struct Part {
     /// The blocks that are in the sums, ascending, and how many scenes could not be described.
     blocks: Vec<usize>,
     left_out: usize,
-    sums: Sums,
+    /// One for all numbers of the pose, or for each of the metric's groups.
+    sums: Vec<Sums>,
 }
 
 /// What every part of a training must know before it begins; each finds it by itself.
@@ -35,11 +36,12 @@ pub struct Part {
 struct Basis {
     rig: Rig,
     hand: HandShape,
-    orientation: OrientationRule,
+    descriptor: Descriptor,
     regressor: Regressor,
-    codebooks: Concatenation,
-    /// Scenes that scaling and Gaussian centres are taken from, and their x (K) and y (28), one
-    /// after the other.
+    /// The distances, where the regressor learns them.
+    metric: Option<Metric>,
+    /// Scenes that scaling and Gaussian centres are taken from, and their x (as the regressor reads
+    /// it) and y (28), one after the other.
     pilot: Vec<usize>,
     pilot_x: Vec<f64>,
     pilot_y: Vec<f64>,
@@ -73,22 +75,21 @@ impl Training {
         let basis = self.basis(rig, hand, scenes, progress)?;
         let columns = basis.columns()?;
         let blocks: Vec<usize> = shard.blocks(scenes.count()).collect();
-        let mut part =
-            Part { sums: Sums::new(&columns), scenes: scenes.count(), left_out: 0, blocks, basis };
-        let codebooks = [part.basis.codebooks()];
+        let sums = columns.iter().map(Sums::new).collect();
+        let mut part = Part { sums, scenes: scenes.count(), left_out: 0, blocks, basis };
         let shown = part.blocks.iter().map(|&block| scenes_of(block, part.scenes).len()).sum();
         progress.begin("render, describe, sum", shown);
         for &block in &part.blocks {
             let numbers: Vec<usize> = scenes_of(block, part.scenes).collect();
-            let rule = self.orientation;
-            let described = describe_with(rig, scenes, &numbers, rule, &codebooks, progress)?;
+            let descriptor = &part.basis.descriptor;
+            let described = describe_scenes(rig, scenes, &numbers, descriptor, progress)?;
             let (kept, x) = described_ones(&numbers, described);
             part.left_out += numbers.len() - kept.len();
             if kept.is_empty() {
                 continue;
             }
             let y = targets_of(scenes, &kept);
-            part.sums.add(&columns, x.as_ref(), y.as_ref())?;
+            part.basis.add(&mut part.sums, &columns, x, &y)?;
         }
         Ok(part)
     }
@@ -110,55 +111,106 @@ impl Training {
             return Err(reason.unwrap_or(Error::TooFewPoses { found: contexts.len() }));
         }
         progress.begin("cluster shape contexts", 1);
-        let codebooks = self.vocabulary.fit(&contexts, phalanx_shape_context::BINS)?;
+        let descriptor = self.descriptor(&contexts)?;
         drop(contexts);
         progress.step();
-        let pilot = evenly_spaced(scenes.count(), Regressor::CANDIDATES);
-        let mut basis = Basis {
+        let pilot = evenly_spaced(scenes.count(), self.regressor.pilot());
+        progress.begin("render and describe", pilot.len());
+        let described = describe_scenes(rig, scenes, &pilot, &descriptor, progress)?;
+        let (pilot, x) = described_ones(&pilot, described);
+        let y = targets_of(scenes, &pilot);
+        let metric = match &self.regressor {
+            Regressor::LearntMetric(fitter) => {
+                progress.begin("learn distances", 1);
+                let metric = fitter.learn(x.as_ref(), y.as_ref(), &descriptor.blocks())?;
+                progress.step();
+                Some(metric)
+            }
+            _ => None,
+        };
+        let chosen = evenly_spaced(pilot.len(), self.regressor.centres());
+        let [x, y] = [x, y].map(|all| columns_of(all.as_ref(), &chosen));
+        let x = match &metric {
+            Some(metric) => metric.projection.apply(x.as_ref())?,
+            None => x,
+        };
+        let numbers = |all: &Mat<f64>| all.col_iter().flat_map(|c| c.iter().copied()).collect();
+        Ok(Basis {
             rig: rig.clone(),
             hand: hand.clone(),
-            orientation: self.orientation,
+            descriptor,
             regressor: self.regressor.clone(),
-            codebooks,
-            pilot: Vec::new(),
-            pilot_x: Vec::new(),
-            pilot_y: Vec::new(),
-        };
-        progress.begin("render and describe", pilot.len());
-        let codebooks = [basis.codebooks()];
-        let described = describe_with(rig, scenes, &pilot, self.orientation, &codebooks, progress)?;
-        let (kept, x) = described_ones(&pilot, described);
-        let y = targets_of(scenes, &kept);
-        basis.pilot_x = x.col_iter().flat_map(|column| column.iter().copied()).collect();
-        basis.pilot_y = y.col_iter().flat_map(|column| column.iter().copied()).collect();
-        basis.pilot = kept;
-        Ok(basis)
+            metric,
+            pilot_x: numbers(&x),
+            pilot_y: numbers(&y),
+            pilot: chosen.into_iter().map(|place| pilot[place]).collect(),
+        })
     }
 }
 
 impl Basis {
-    /// The codebooks, each of the camera of its place.
-    fn codebooks(&self) -> ViewCodebooks {
-        let codebooks = self.codebooks.clone();
-        ViewCodebooks { views: (0..codebooks.views()).collect(), codebooks }
+    /// Numbers that the regressor reads of a scene.
+    fn read(&self) -> usize {
+        self.metric.as_ref().map_or(self.descriptor.dim(), |metric| metric.projection.outputs())
     }
 
-    fn columns(&self) -> Result<Columns> {
+    /// The columns of all numbers of the pose together, or of each group.
+    fn columns(&self) -> Result<Vec<Columns>> {
         let samples = self.pilot.len();
+        let length = |each: usize| each.saturating_mul(samples);
         for (part, found, expected) in [
-            ("numbers of pilot descriptors", self.pilot_x.len(), samples * self.codebooks.dim()),
-            ("numbers of pilot poses", self.pilot_y.len(), samples * Dof::COUNT),
+            ("numbers of pilot descriptors", self.pilot_x.len(), length(self.read())),
+            ("numbers of pilot poses", self.pilot_y.len(), length(Dof::COUNT)),
         ] {
             if found != expected {
                 return Err(Error::Mismatch { part, found, expected });
             }
         }
-        let pilot = Pilot {
-            x: MatRef::from_column_major_slice(&self.pilot_x, self.codebooks.dim(), samples),
-            y: MatRef::from_column_major_slice(&self.pilot_y, Dof::COUNT, samples),
-            samples: &self.pilot,
+        let x = MatRef::from_column_major_slice(&self.pilot_x, self.read(), samples);
+        let y = MatRef::from_column_major_slice(&self.pilot_y, Dof::COUNT, samples);
+        let Regressor::LearntMetric(fitter) = &self.regressor else {
+            let pilot = Pilot { x, y, samples: &self.pilot };
+            return Ok(vec![Columns::new(&pilot, self.regressor.summed()?)?]);
         };
-        Ok(Columns::new(&pilot, self.regressor.summed()?)?)
+        let metric = self.metric()?;
+        let of_group = |group: usize| {
+            let y = metric.targets(group, y);
+            let x = metric.part(group, x);
+            let pilot = Pilot { x, y: y.as_ref(), samples: &self.pilot };
+            Ok(Columns::in_proportion(&pilot, fitter.regression.width)?)
+        };
+        (0..metric.groups.len()).into_par_iter().map(of_group).collect()
+    }
+
+    /// The learnt distances of a regressor that learns them.
+    fn metric(&self) -> Result<&Metric> {
+        let missing = Error::Mismatch { part: "learnt metrics", found: 0, expected: 1 };
+        self.metric.as_ref().ok_or(missing)
+    }
+
+    /// Adds scenes' descriptors and poses to the sums.
+    fn add(&self, sums: &mut [Sums], columns: &[Columns], x: Mat<f64>, y: &Mat<f64>) -> Result<()> {
+        let Some(metric) = &self.metric else {
+            return Ok(sums[0].add(&columns[0], x.as_ref(), y.as_ref())?);
+        };
+        let z = metric.projection.apply(x.as_ref())?;
+        for (group, (sums, columns)) in sums.iter_mut().zip(columns).enumerate() {
+            let y = metric.targets(group, y.as_ref());
+            sums.add(columns, metric.part(group, z.as_ref()), y.as_ref())?;
+        }
+        Ok(())
+    }
+
+    /// The regression that sums over all scenes amount to.
+    fn fit(&self, sums: &[Sums]) -> Result<Regression> {
+        let work: Vec<(Columns, &Sums)> = self.columns()?.into_iter().zip(sums).collect();
+        let fit =
+            |(columns, sums): &(Columns, &Sums)| Ok(self.regressor.fit_sums(columns, sums)?.model);
+        let mut models = work.par_iter().map(fit).collect::<Result<Vec<_>>>()?;
+        Ok(match &self.metric {
+            Some(metric) => Projected::from_parts(metric.clone(), models)?.into(),
+            None => models.remove(0).into(),
+        })
     }
 }
 
@@ -177,10 +229,12 @@ impl Part {
         for (reason, holds) in [
             ("its blocks are not in order", ascending(&self.blocks, self.scenes.div_ceil(BLOCK))),
             ("its pilot is not in order", ascending(&self.basis.pilot, self.scenes)),
-            ("its pilot is too large", self.basis.pilot.len() <= Regressor::CANDIDATES),
+            ("its pilot is too large", self.basis.pilot.len() <= self.basis.regressor.centres()),
             (
                 "its sums are of other scenes than its blocks",
-                self.sums.samples().checked_add(self.left_out) == Some(shown),
+                self.sums
+                    .iter()
+                    .all(|sums| sums.samples().checked_add(self.left_out) == Some(shown)),
             ),
         ] {
             if !holds {
@@ -211,7 +265,9 @@ impl Part {
             let both = scenes_of(block, self.scenes);
             return Err(Error::Overlap { first: both.start, last: both.end - 1 });
         }
-        self.sums.merge(&other.sums)?;
+        for (sums, other) in self.sums.iter_mut().zip(&other.sums) {
+            sums.merge(other)?;
+        }
         self.blocks.extend(other.blocks);
         self.blocks.sort_unstable();
         self.left_out += other.left_out;
@@ -228,9 +284,9 @@ impl Part {
             let missing = scenes_of(missing, self.scenes);
             return Err(Error::MissingPart { first: missing.start, last: missing.end - 1 });
         }
-        let fit = self.basis.regressor.fit_sums(&self.basis.columns()?, &self.sums)?;
-        let Basis { rig, hand, orientation, codebooks, .. } = self.basis;
-        Estimator::from_parts(rig, hand, orientation, codebooks, fit.model)
+        let regression = self.basis.fit(&self.sums)?;
+        let Basis { rig, hand, descriptor, .. } = self.basis;
+        Estimator::from_parts(rig, hand, descriptor, regression)
     }
 
     /// The part's file.
@@ -252,21 +308,24 @@ impl Part {
         part.basis.hand.validate()?;
         part.check_numbers()?;
         let columns = part.basis.columns()?;
+        let (found, expected) = (part.sums.len(), columns.len());
+        if found != expected {
+            return Err(Error::Mismatch { part: "sums", found, expected });
+        }
         // Sums refuse to be joined with those of other columns.
-        Sums::new(&columns).merge(&part.sums)?;
+        for (columns, sums) in columns.iter().zip(&part.sums) {
+            Sums::new(columns).merge(sums)?;
+        }
         Ok(part)
     }
 }
 
 /// Which scenes could be described, and their descriptors.
-fn described_ones(
-    numbers: &[usize],
-    described: Vec<Result<Vec<Vec<f64>>>>,
-) -> (Vec<usize>, Mat<f64>) {
+fn described_ones(numbers: &[usize], described: Vec<Result<Vec<f64>>>) -> (Vec<usize>, Mat<f64>) {
     let kept: Vec<(usize, Vec<f64>)> = numbers
         .iter()
         .zip(described)
-        .filter_map(|(&number, described)| Some((number, described.ok()?.pop()?)))
+        .filter_map(|(&number, described)| Some((number, described.ok()?)))
         .collect();
     let dim = kept.first().map_or(0, |(_, x)| x.len());
     let x = Mat::from_fn(dim, kept.len(), |row, i| kept[i].1[row]);

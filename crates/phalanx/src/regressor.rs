@@ -1,9 +1,10 @@
 //! The regressors that an estimator can be learnt with.
 
 use faer::{Mat, MatRef};
+use phalanx_hand::{Digit, Dof};
 use phalanx_rvm::{
-    Bridges, Cascade, Columns, Fit, ForwardSelection, Kernel, KernelRidge, MultivariateRvm,
-    Nystrom, Pilot, Ridge, Sums, Tipping,
+    Block, Bridges, Cascade, Columns, Fit, ForwardSelection, GradientMetric, Kernel, KernelRidge,
+    Metric, MultivariateRvm, Nystrom, Pilot, Ridge, Sums, Tipping,
 };
 use serde::{Deserialize, Serialize};
 
@@ -32,12 +33,70 @@ pub enum Regressor {
     KernelRidge(KernelRidge),
     /// Kernel ridge regression on Gaussians of some of the samples.
     Nystrom(Nystrom),
+    /// Kernel ridge regression on some of the samples' Gaussians, for each digit with a distance of
+    /// its own that is learnt first.
+    LearntMetric(LearntMetric),
+}
+
+/// How distances are learnt and regressed with. In a prior without couplings between the digits, what
+/// one digit does says nothing of another; a distance of its own for each needs not see every
+/// combination.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LearntMetric {
+    /// Scenes, evenly spaced, that principal components and distances are learnt from.
+    pub pilot: usize,
+    /// Principal components of each view's code, and of what is beside it, at most.
+    pub components: usize,
+    /// How distances are learnt.
+    pub metric: GradientMetric,
+    /// Gaussians of each digit's regression, at most; those of the pilot, evenly spaced.
+    pub centres: usize,
+    /// The regression.
+    pub regression: Nystrom,
+}
+
+impl LearntMetric {
+    /// Learns the distances from a pilot's descriptors, K × n, made of parts of these lengths, and
+    /// poses, 28 × n.
+    pub(crate) fn learn(
+        &self,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        parts: &[usize],
+    ) -> Result<Metric> {
+        let block = |&inputs: &usize| Block { inputs, components: self.components };
+        let blocks: Vec<Block> = parts.iter().map(block).collect();
+        Ok(self.metric.learn(x, y, &blocks, &groups())?)
+    }
+}
+
+/// The numbers of the pose that are regressed together: each digit's, and all others.
+fn groups() -> Vec<Vec<usize>> {
+    let digits = Digit::ALL.map(|digit| digit.dofs().map(Dof::index).to_vec());
+    let others = Dof::ALL.into_iter().filter(|dof| !dof.is_internal()).map(Dof::index).collect();
+    digits.into_iter().chain([others]).collect()
 }
 
 impl Regressor {
     /// Most samples that Gaussians are put on by default. Of more, as many are candidates, evenly
     /// spaced, while all are fitted to: then no matrix has a row or column for each sample.
     pub const CANDIDATES: usize = 2000;
+
+    /// Scenes, at most, that are looked at before the others stream by.
+    pub(crate) fn pilot(&self) -> usize {
+        match self {
+            Self::LearntMetric(fitter) => fitter.pilot,
+            _ => Self::CANDIDATES,
+        }
+    }
+
+    /// Gaussians, at most, where scenes stream by.
+    pub(crate) fn centres(&self) -> usize {
+        match self {
+            Self::LearntMetric(fitter) => fitter.centres,
+            _ => Self::CANDIDATES,
+        }
+    }
 
     /// Fits targets `y`, m × I, to descriptors `x`, K × I; samples are columns. Of regressors with
     /// Gaussians to choose from, those that work from sums see
@@ -57,6 +116,9 @@ impl Regressor {
             Self::KernelRidge(fitter) => fitter.fit(x, y),
             Self::MultivariateRvm(fitter) if few || fitter.kernel == Kernel::Linear => {
                 fitter.fit(x, y)
+            }
+            Self::LearntMetric(_) => {
+                return Err(Error::InShardsOnly { regressor: "regression in a learnt metric" });
             }
             Self::Bridges(_)
             | Self::Cascade(_)
@@ -79,6 +141,7 @@ impl Regressor {
             Self::Forward(fitter) => Ok(fitter.kernel),
             Self::MultivariateRvm(fitter) => Ok(fitter.kernel),
             Self::Nystrom(fitter) => Ok(Kernel::Gaussian(fitter.width)),
+            Self::LearntMetric(fitter) => Ok(Kernel::Gaussian(fitter.regression.width)),
             Self::Cascade(_) => {
                 not("both", "its features are selected before samples can be summed")
             }
@@ -98,6 +161,7 @@ impl Regressor {
             Self::Forward(fitter) => fitter.fit_sums(columns, sums)?,
             Self::MultivariateRvm(fitter) => fitter.fit_sums(columns, sums)?,
             Self::Nystrom(fitter) => fitter.fit_sums(columns, sums)?,
+            Self::LearntMetric(fitter) => fitter.regression.fit_sums(columns, sums)?,
             Self::Cascade(_) | Self::Tipping(_) | Self::KernelRidge(_) => {
                 unreachable!("refused above")
             }
@@ -130,7 +194,7 @@ fn sums(columns: &Columns, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Sum
     Ok(sums)
 }
 
-fn columns_of(all: MatRef<'_, f64>, chosen: &[usize]) -> Mat<f64> {
+pub(crate) fn columns_of(all: MatRef<'_, f64>, chosen: &[usize]) -> Mat<f64> {
     Mat::from_fn(all.nrows(), chosen.len(), |row, k| all[(row, chosen[k])])
 }
 

@@ -3,11 +3,14 @@
 use faer::Mat;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
-use phalanx_multiview::{Concatenation, Scratch, Vocabulary};
+use phalanx_multiview::{Codes, Concatenation, Scratch, Vocabulary};
 use phalanx_rvm::{KernelRidge, Lambda, Width};
 use rayon::prelude::*;
 
-use crate::{Error, Estimator, OrientationRule, Progress, Regressor, Result, describe_poses};
+use crate::{
+    Beside, Descriptor, Error, Estimator, NominalScenes, OrientationRule, PoseContexts, Progress,
+    Regressor, Result, Shard, describe_poses,
+};
 
 /// How an estimator is learnt. The default is the paper's descriptor, turned to the forearm's axis,
 /// with dense kernel regression.
@@ -21,8 +24,20 @@ pub struct Training {
     pub orientation: OrientationRule,
     /// The codebooks.
     pub vocabulary: Vocabulary,
+    /// What is described with them.
+    pub description: Description,
     /// The regressor.
     pub regressor: Regressor,
+}
+
+/// What of the silhouettes is described.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Description {
+    /// Soft counts of the shape contexts, the paper's.
+    Counts,
+    /// Residuals of the shape contexts to the nearest centres, and beside them the hand's coverage
+    /// of a coarse grid.
+    Residuals,
 }
 
 impl Default for Training {
@@ -30,6 +45,7 @@ impl Default for Training {
         Self {
             orientation: OrientationRule::default(),
             vocabulary: Vocabulary::default(),
+            description: Description::Counts,
             regressor: Regressor::KernelRidge(KernelRidge {
                 width: Width::Scatter(0.5),
                 lambda: Lambda::Given(0.01),
@@ -60,6 +76,12 @@ impl Training {
         if poses.len() < 2 {
             return Err(Error::TooFewPoses { found: poses.len() });
         }
+        if self.description != Description::Counts
+            || matches!(self.regressor, Regressor::LearntMetric(_))
+        {
+            let scenes = NominalScenes { rig, hand, poses };
+            return self.shard(rig, hand, &scenes, Shard::WHOLE, progress)?.finish();
+        }
         let contexts = describe_poses(rig, hand, poses, self.orientation, progress)?;
         progress.begin("cluster shape contexts", 1);
         let views = self.vocabulary.fit(&contexts, phalanx_shape_context::BINS)?;
@@ -68,7 +90,22 @@ impl Training {
         progress.begin("fit the regressor", 1);
         let fit = self.regressor.fit(&x, &targets(poses))?;
         progress.step();
-        Estimator::from_parts(rig.clone(), hand.clone(), self.orientation, views, fit.model)
+        let descriptor = Descriptor::new(self.orientation, views, Beside::Nothing);
+        Estimator::from_parts(rig.clone(), hand.clone(), descriptor, fit.model)
+    }
+
+    /// The descriptor, with codebooks learnt from shape contexts.
+    pub(crate) fn descriptor(&self, contexts: &[PoseContexts]) -> Result<Descriptor> {
+        let (bins, rule) = (phalanx_shape_context::BINS, self.orientation);
+        Ok(match self.description {
+            Description::Counts => {
+                Descriptor::new(rule, self.vocabulary.fit(contexts, bins)?, Beside::Nothing)
+            }
+            Description::Residuals => {
+                let codes: Codes = self.vocabulary.fit_residuals(contexts, bins)?;
+                Descriptor::new(rule, codes, Beside::Coverage)
+            }
+        })
     }
 }
 

@@ -116,10 +116,15 @@ impl SceneDescriber {
         scene: &Scene,
     ) -> Result<impl Iterator<Item = &'a Silhouette> + use<'a>> {
         self.see(scene)?;
-        Ok(self.views.iter().map(|view| &view.silhouette))
+        Ok(self.seen())
     }
 
-    fn see(&mut self, scene: &Scene) -> Result<()> {
+    /// The silhouettes of the scene last seen.
+    pub(crate) fn seen(&self) -> impl Iterator<Item = &Silhouette> + Clone {
+        self.views.iter().map(|view| &view.silhouette)
+    }
+
+    pub(crate) fn see(&mut self, scene: &Scene) -> Result<()> {
         let (found, expected) = (scene.views.len(), self.views.len());
         if found != expected {
             return Err(Error::Mismatch { part: "views of the scene", found, expected });

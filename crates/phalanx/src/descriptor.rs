@@ -1,0 +1,152 @@
+//! From the silhouettes of all views to the vector that a regressor reads.
+
+use phalanx_camera::Rig;
+use phalanx_codebook::Coding;
+use phalanx_multiview::{Codes, Scratch};
+use phalanx_segmentation::Silhouette;
+use phalanx_shape_context::BINS;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::coverage::{COVERAGE, coverage_into};
+use crate::{Describer, Error, OrientationRule, Progress, Result, SceneDescriber, Scenes};
+
+/// What a regressor reads of the silhouettes: codes of their shape contexts, view by view, and then
+/// what is put beside them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Descriptor {
+    orientation: OrientationRule,
+    codes: Codes,
+    beside: Beside,
+}
+
+/// What is put beside the codes of the shape contexts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Beside {
+    /// Nothing, as in the paper.
+    Nothing,
+    /// How much of each cell of a 24 × 18 grid over the picture is hand, for each view. Shape
+    /// contexts know where points lie among each other; this knows where they lie in the picture,
+    /// which a calibrated camera gives a meaning.
+    Coverage,
+}
+
+/// Memory that describing one sample after another uses again.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Memory {
+    pub(crate) describer: Describer,
+    contexts: Vec<Vec<f32>>,
+    coding: Scratch,
+}
+
+impl Descriptor {
+    /// Puts a descriptor together.
+    pub fn new(orientation: OrientationRule, codes: impl Into<Codes>, beside: Beside) -> Self {
+        Self { orientation, codes: codes.into(), beside }
+    }
+
+    /// Which way shape contexts are turned.
+    pub fn orientation(&self) -> OrientationRule {
+        self.orientation
+    }
+
+    /// The codings of the views' shape contexts.
+    pub fn codes(&self) -> &Codes {
+        &self.codes
+    }
+
+    /// What is put beside them.
+    pub fn beside(&self) -> Beside {
+        self.beside
+    }
+
+    /// The number of views.
+    pub fn views(&self) -> usize {
+        self.codes.views().len()
+    }
+
+    /// The length of the vector.
+    pub fn dim(&self) -> usize {
+        self.blocks().iter().sum()
+    }
+
+    /// The lengths of its parts: each view's code, then what is beside, each view's again.
+    pub(crate) fn blocks(&self) -> Vec<usize> {
+        let beside = match self.beside {
+            Beside::Nothing => 0,
+            Beside::Coverage => self.views(),
+        };
+        let codes = self.codes.views().iter().map(Coding::dim);
+        codes.chain(std::iter::repeat_n(COVERAGE, beside)).collect()
+    }
+
+    /// Refuses codings of something other than shape contexts.
+    pub(crate) fn check(&self, rig: &Rig) -> Result<()> {
+        let (found, expected) = (self.views(), rig.cameras.len());
+        if found != expected {
+            return Err(Error::Mismatch { part: "codebooks", found, expected });
+        }
+        for (camera, coding) in rig.cameras.iter().zip(self.codes.views()) {
+            let (found, expected) = (coding.bins(), BINS);
+            if found != expected {
+                return Err(Error::CodebookBins { camera: camera.name.clone(), found, expected });
+            }
+        }
+        Ok(())
+    }
+
+    /// Describes one silhouette per camera of the rig.
+    pub(crate) fn describe<'a>(
+        &self,
+        rig: &Rig,
+        silhouettes: impl Iterator<Item = &'a Silhouette> + Clone,
+        memory: &mut Memory,
+        x: &mut Vec<f64>,
+    ) -> Result<()> {
+        let Memory { describer, contexts, coding } = memory;
+        contexts.resize_with(self.views(), Vec::new);
+        let views = rig.cameras.iter().zip(silhouettes.clone()).zip(&mut *contexts);
+        for ((camera, silhouette), kept) in views {
+            let contexts = describer
+                .contexts(silhouette, self.orientation)
+                .map_err(|reason| Error::ShapeContext { camera: camera.name.clone(), reason })?;
+            kept.clear();
+            kept.extend_from_slice(contexts.values());
+        }
+        x.resize(self.dim(), 0.0);
+        let (codes, beside) = x.split_at_mut(self.codes.dim());
+        self.codes.describe(contexts, coding, codes)?;
+        for (silhouette, cells) in silhouettes.zip(beside.chunks_exact_mut(COVERAGE)) {
+            coverage_into(&silhouette.mask, cells);
+        }
+        Ok(())
+    }
+}
+
+/// Draws scenes through every camera of a rig and describes them, in parallel: for every scene of
+/// `numbers`, in order, its descriptor. The shape contexts, a hundred times larger, are forgotten at
+/// once.
+///
+/// # Errors
+/// A camera that cannot draw at all; of each scene, that a camera cannot see or describe it.
+pub fn describe_scenes(
+    rig: &Rig,
+    scenes: &dyn Scenes,
+    numbers: &[usize],
+    descriptor: &Descriptor,
+    progress: &dyn Progress,
+) -> Result<Vec<Result<Vec<f64>>>> {
+    let drawing = SceneDescriber::new(rig, descriptor.orientation)?;
+    let describe = |(drawing, memory): &mut (SceneDescriber, Memory), &pose: &usize| {
+        let mut x = Vec::new();
+        let described = drawing.see(&scenes.scene(pose)).and_then(|()| {
+            descriptor.describe(rig, drawing.seen(), memory, &mut x)?;
+            Ok(x)
+        });
+        progress.step();
+        described.map_err(|reason| Error::TrainingPose { pose, reason: Box::new(reason) })
+    };
+    let memory = || (drawing.clone(), Memory::default());
+    Ok(numbers.par_iter().map_init(memory, describe).collect())
+}

@@ -1,0 +1,69 @@
+//! Trainings for those who do not want to choose.
+
+use phalanx_codebook::KMeans;
+use phalanx_multiview::Vocabulary;
+use phalanx_rvm::{Deviation, GradientMetric, Nystrom, Penalty, Width};
+
+use crate::{Description, LearntMetric, OrientationRule, Regressor, Training};
+
+/// How much time an estimator is worth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Preset {
+    /// Half a minute on two cores, three views.
+    Fast,
+    /// A few minutes.
+    #[default]
+    Balanced,
+    /// Up to twenty minutes.
+    Best,
+}
+
+impl Preset {
+    /// All, the fastest first.
+    pub const ALL: [Self; 3] = [Self::Fast, Self::Balanced, Self::Best];
+
+    /// How many scenes it is meant to learn from.
+    pub fn scenes(self) -> usize {
+        match self {
+            Self::Fast => 4000,
+            Self::Balanced => 20_000,
+            Self::Best => 80_000,
+        }
+    }
+
+    /// The training. It learns from scenes that stream by, of which it should see independent,
+    /// damaged ones, as many as [`scenes`](Self::scenes) says.
+    pub fn training(self) -> Training {
+        let (pilot, first, gradients, centres) = match self {
+            Self::Fast => (2000, 800, 300, 800),
+            Self::Balanced => (5000, 1500, 1000, 2500),
+            Self::Best => (8000, 3000, 2000, 5000),
+        };
+        let regression = |width, penalties: &[f64]| Nystrom {
+            width: Width::Scatter(width),
+            deviation: Deviation::CrossValidated,
+            penalty: Penalty::CrossValidated(penalties.to_vec()),
+        };
+        Training {
+            orientation: OrientationRule::default(),
+            vocabulary: Vocabulary {
+                centres: 48,
+                clustering: KMeans { restarts: 1, ..KMeans::default() },
+                ..Vocabulary::default()
+            },
+            description: Description::Residuals,
+            regressor: Regressor::LearntMetric(LearntMetric {
+                pilot,
+                components: 120,
+                metric: GradientMetric {
+                    first: regression(0.5, &[0.03, 0.1, 0.3]),
+                    centres: first,
+                    gradients,
+                    rank: 32,
+                },
+                centres,
+                regression: regression(1.0, &[1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1]),
+            }),
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! The fitted regressor of an estimator.
+
+use phalanx_rvm::{Model, Projected, Scratch};
+
+/// A fitted regressor from descriptors to poses.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Regression {
+    /// One model of all numbers of the pose.
+    Joint(Box<Model>),
+    /// A model for each digit, with a distance of its own.
+    Projected(Projected),
+}
+
+impl From<Model> for Regression {
+    fn from(model: Model) -> Self {
+        Self::Joint(Box::new(model))
+    }
+}
+
+impl From<Projected> for Regression {
+    fn from(projected: Projected) -> Self {
+        Self::Projected(projected)
+    }
+}
+
+impl Regression {
+    /// The models, of all numbers of the pose or of a group of them each.
+    pub fn models(&self) -> &[Model] {
+        match self {
+            Self::Joint(model) => std::slice::from_ref(model),
+            Self::Projected(projected) => projected.models(),
+        }
+    }
+
+    /// Length of a descriptor.
+    pub fn inputs(&self) -> usize {
+        match self {
+            Self::Joint(model) => model.inputs(),
+            Self::Projected(projected) => projected.inputs(),
+        }
+    }
+
+    /// Length of a pose.
+    pub fn outputs(&self) -> usize {
+        self.models().iter().map(Model::outputs).sum()
+    }
+
+    /// How many numbers of the descriptor it reads.
+    pub fn features(&self) -> usize {
+        match self {
+            Self::Joint(model) => model.selected_features().len(),
+            Self::Projected(projected) => projected.inputs(),
+        }
+    }
+
+    /// How many training samples it keeps.
+    pub fn kept_samples(&self) -> usize {
+        self.models().iter().map(|model| model.kept_samples().len()).max().unwrap_or(0)
+    }
+
+    /// Mean and standard deviation of the pose for one descriptor.
+    pub(crate) fn predict_into(
+        &self,
+        x: &[f64],
+        scratch: &mut Scratch,
+        mean: &mut [f64],
+        std: &mut [f64],
+    ) -> phalanx_rvm::Result<()> {
+        match self {
+            Self::Joint(model) => model.predict_into(x, scratch, mean, std),
+            Self::Projected(projected) => projected.predict_into(x, scratch, mean, std),
+        }
+    }
+}
