@@ -9,6 +9,7 @@ mod files;
 mod fixtures;
 mod headline;
 mod held_out;
+mod hypotheses;
 mod lab;
 mod memory;
 mod merge;
@@ -65,6 +66,8 @@ enum Command {
     EvalHeldOut(held_out::Arguments),
     /// Compare ways of choosing which samples to keep, and write docs/selection.md.
     Selection(selection::Arguments),
+    /// Compare ways of naming several poses for one picture, and write docs/hypotheses.md.
+    Hypotheses(hypotheses::Arguments),
     /// Put one of the paper's figures or claims to the test.
     Experiment(experiments::Arguments),
     /// Run every experiment and write one page that a reader of the paper can follow.
@@ -109,6 +112,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::EvalTable1(arguments) => table1::run(arguments)?,
         Command::EvalHeldOut(arguments) => return held_out::run(arguments),
         Command::Selection(arguments) => selection::run(arguments)?,
+        Command::Hypotheses(arguments) => hypotheses::run(arguments)?,
         Command::Experiment(arguments) => experiments::run(arguments)?,
         Command::Report(arguments) => return report::run(arguments),
         Command::Headline(arguments) => headline::run(arguments)?,

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
+use phalanx_rvm::ConditionalDensity;
 use phalanx_segmentation::{Forearm, Silhouette};
 
 use crate::{Descriptor, Error, Picture, Regression, Result, descriptor};
@@ -15,6 +16,7 @@ pub struct Estimator {
     hand: HandShape,
     descriptor: Descriptor,
     regression: Regression,
+    errors: Option<ConditionalDensity>,
 }
 
 /// What is known of a hand after looking at it.
@@ -76,7 +78,19 @@ impl Estimator {
                 return Err(Error::Mismatch { part, found, expected });
             }
         }
-        Ok(Self { rig, hand, descriptor, regression })
+        Ok(Self { rig, hand, descriptor, regression, errors: None })
+    }
+
+    /// The same estimator, knowing how its estimates err.
+    ///
+    /// # Errors
+    /// Errors of something other than poses.
+    pub fn with_errors(self, errors: ConditionalDensity) -> Result<Self> {
+        let (found, expected) = (errors.outputs(), Dof::COUNT);
+        if found != expected {
+            return Err(Error::Mismatch { part: "numbers in its errors", found, expected });
+        }
+        Ok(Self { errors: Some(errors), ..self })
     }
 
     /// The cameras and the volume it was learnt for.
@@ -97,6 +111,11 @@ impl Estimator {
     /// Its regressor.
     pub fn regression(&self) -> &Regression {
         &self.regression
+    }
+
+    /// How its estimates err, if it has [learnt it](Self::learn_errors).
+    pub fn errors(&self) -> Option<&ConditionalDensity> {
+        self.errors.as_ref()
     }
 
     /// Estimates the pose from one picture per camera, in the order of the rig's cameras.
