@@ -140,8 +140,8 @@ pub(crate) fn save(estimator: &Estimator, out: &Path) -> Result<()> {
         "{}: learnt through {}; reads {} features, {} kernel centres; {} KiB\n",
         out.display(),
         names.join(", "),
-        estimator.model().selected_features().len(),
-        estimator.model().kept_samples().len(),
+        estimator.regression().features(),
+        estimator.regression().kept_samples(),
         bytes.len().div_ceil(1024),
     ))
 }

@@ -6,7 +6,7 @@ use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
 use phalanx_rvm::ConditionalDensity;
 use phalanx_segmentation::{Forearm, Silhouette};
 
-use crate::{Descriptor, Error, Picture, Regression, Result, descriptor};
+use crate::{Descriptor, Error, OrientationRule, Picture, Regression, Result, descriptor};
 
 /// A pose estimator for one rig and one hand; see [`Training`](crate::Training) for how to get
 /// one.
@@ -106,6 +106,11 @@ impl Estimator {
     /// What it reads of the silhouettes.
     pub fn descriptor(&self) -> &Descriptor {
         &self.descriptor
+    }
+
+    /// Which way its shape contexts are turned.
+    pub fn orientation(&self) -> OrientationRule {
+        self.descriptor.orientation()
     }
 
     /// Its regressor.

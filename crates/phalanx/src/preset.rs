@@ -34,10 +34,10 @@ impl Preset {
     /// The training. It learns from scenes that stream by, of which it should see independent,
     /// damaged ones, as many as [`scenes`](Self::scenes) says.
     pub fn training(self) -> Training {
-        let (pilot, first, gradients, centres) = match self {
-            Self::Fast => (2000, 800, 300, 800),
-            Self::Balanced => (5000, 1500, 1000, 2500),
-            Self::Best => (8000, 3000, 2000, 5000),
+        let (pilot, rounds, first, gradients, centres) = match self {
+            Self::Fast => (2000, 1, 800, 300, 800),
+            Self::Balanced => (8000, 2, 1500, 1000, 2500),
+            Self::Best => (12_000, 3, 2500, 1500, 5000),
         };
         let regression = |width, penalties: &[f64]| Nystrom {
             width: Width::Scatter(width),
@@ -56,7 +56,8 @@ impl Preset {
                 pilot,
                 components: 120,
                 metric: GradientMetric {
-                    first: regression(0.5, &[0.03, 0.1, 0.3]),
+                    regression: regression(1.0, &[0.01, 0.03, 0.1, 0.3]),
+                    rounds,
                     centres: first,
                     gradients,
                     rank: 32,

@@ -3,7 +3,6 @@
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
-use crate::model::Basis;
 use crate::principal::Principal;
 use crate::problem::Problem;
 use crate::sums::Sums;
@@ -23,18 +22,22 @@ use crate::{
 ///
 /// > M = mean of JᵀJ,  J = ∂(targets of the group)/∂(components) at a sample,
 ///
-/// gives the distance (a − b)ᵀM(a − b). Of M the strongest eigenvectors are kept: a group reads few
-/// numbers, which is what makes predictions fast.
+/// gives the distance (a − b)ᵀM(a − b). In further rounds the group's own regression, in that
+/// distance, gives the next. Of M the strongest eigenvectors are kept: a group reads few numbers,
+/// which is what makes predictions fast.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GradientMetric {
-    /// The first regression.
-    pub first: Nystrom,
-    /// Gaussians of the first regression, at most; at least 1.
+    /// The regressions whose gradients are taken.
+    pub regression: Nystrom,
+    /// How often a distance is learnt, at least 1.
+    pub rounds: usize,
+    /// Gaussians of the regressions, at most; at least 1.
     pub centres: usize,
     /// Samples whose gradients are averaged, at most; at least 1.
     pub gradients: usize,
-    /// Numbers that a group of targets reads, at most; at least 1.
+    /// Numbers that a group of targets reads, at most; at least 1. In all rounds but the last it may
+    /// read [`WIDER`](Self::WIDER) times as many.
     pub rank: usize,
 }
 
@@ -60,6 +63,9 @@ pub struct Metric {
 }
 
 impl GradientMetric {
+    /// How many times its rank a group may read before the last round.
+    pub const WIDER: usize = 3;
+
     /// Learns from inputs `x`, K×n, made up of `blocks`, and targets `y`, m×n, in `groups` of
     /// indices.
     pub fn learn(
@@ -69,19 +75,22 @@ impl GradientMetric {
         blocks: &[Block],
         groups: &[Vec<usize>],
     ) -> Result<Metric> {
-        check::count(self.rank.min(1), 1)?;
-        check::count(self.gradients.min(1), 1)?;
+        for count in [self.rounds, self.rank, self.gradients] {
+            check::count(count.min(1), 1)?;
+        }
+        check::matrix("y", y)?;
+        check::length("columns (samples) of y", x.ncols(), y.ncols())?;
+        if let Some(&output) = groups.iter().flatten().find(|&&output| output >= y.nrows()) {
+            return Err(Error::Count { asked: output + 1, available: y.nrows() });
+        }
         let (mean, principal) = components(x, blocks)?;
-        let z = linalg::product(principal.as_ref(), x);
-        let offset = linalg::product(
-            principal.as_ref(),
-            MatRef::from_column_major_slice(&mean, mean.len(), 1),
-        );
-        let z = Mat::from_fn(z.nrows(), z.ncols(), |d, i| z[(d, i)] - offset[(d, 0)]);
-        let model = self.first_model(z.as_ref(), y)?;
-        let gradients = self.gradients(&model, z.as_ref(), y)?;
-        let directions = groups.par_iter().map(|outputs| self.directions(&gradients, outputs));
-        let directions = directions.collect::<Result<Vec<_>>>()?;
+        let z = centred_product(principal.as_ref(), x, &mean);
+        let gradients = self.gradients(z.as_ref(), y)?;
+        let learnt = groups.par_iter().map(|outputs| {
+            let first = Self::directions(&of_group(&gradients, outputs), self.width(1));
+            self.further(first?, z.as_ref(), linalg::subrows(y, outputs).as_ref())
+        });
+        let directions = learnt.collect::<Result<Vec<_>>>()?;
         let ranks = directions.iter().map(Mat::nrows);
         let described = groups.iter().zip(ranks);
         let groups: Vec<Group> =
@@ -91,58 +100,88 @@ impl GradientMetric {
         Ok(Metric { projection: Projection::about(&mean, matrix.as_ref())?, groups })
     }
 
-    fn first_model(&self, z: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Model> {
-        let problem = Problem::in_proportion(z, y)?;
-        let centres = self.centres.min(z.ncols());
-        check::count(centres, z.ncols())?;
-        let spaced: Vec<usize> = (0..centres).map(|c| c * z.ncols() / centres).collect();
-        let kernel = Kernel::Gaussian(self.first.width);
-        let columns = Columns::of(&problem, problem.features(), kernel, &spaced)?.centred();
-        let mut sums = Sums::new(&columns);
-        sums.add(&columns, z, y)?;
-        Ok(self.first.fit_sums(&columns, &sums)?.model)
+    /// Numbers that a group may read after this round.
+    fn width(&self, round: usize) -> usize {
+        if round < self.rounds { self.rank.saturating_mul(Self::WIDER) } else { self.rank }
+    }
+
+    /// The rounds after the first, of a group with targets `y`: from its directions, rank×d, to those
+    /// that it keeps.
+    fn further(
+        &self,
+        mut directions: Mat<f64>,
+        z: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+    ) -> Result<Mat<f64>> {
+        for round in 2..=self.rounds {
+            if directions.nrows() == 0 {
+                break;
+            }
+            let own = linalg::product(directions.as_ref(), z);
+            let gradients = self.gradients(own.as_ref(), y)?;
+            let next = Self::directions(&gradients, self.width(round))?;
+            directions = linalg::product(next.as_ref(), directions.as_ref());
+        }
+        Ok(directions)
     }
 
     /// Of each sample the gradients of all standardised targets, m×d.
-    fn gradients(
-        &self,
-        model: &Model,
-        z: MatRef<'_, f64>,
-        y: MatRef<'_, f64>,
-    ) -> Result<Vec<Mat<f64>>> {
+    fn gradients(&self, z: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Vec<Mat<f64>>> {
+        let model = self.model(z, y)?;
         let scale = Standardiser::fit(y)?;
         let samples = self.gradients.min(z.ncols());
         let spaced: Vec<usize> = (0..samples).map(|i| i * z.ncols() / samples).collect();
         let gradient = |&sample: &usize| {
-            let mut gradient = model.gradient(z.col(sample))?;
+            let mut gradient = model.gradient(z.col(sample));
             for (row, &scale) in scale.scale().iter().enumerate() {
                 let per_deviation = if scale > 0.0 { scale.recip() } else { 0.0 };
                 gradient.row_mut(row).iter_mut().for_each(|value| *value *= per_deviation);
             }
-            Ok(gradient)
+            gradient
         };
-        spaced.par_iter().map(gradient).collect()
+        Ok(spaced.par_iter().map(gradient).collect())
     }
 
-    /// The root of M of one group, rank×d.
-    fn directions(&self, gradients: &[Mat<f64>], outputs: &[usize]) -> Result<Mat<f64>> {
-        let (targets, d) = gradients.first().map_or((0, 0), Mat::shape);
-        if let Some(&output) = outputs.iter().find(|&&output| output >= targets) {
-            return Err(Error::Count { asked: output + 1, available: targets });
-        }
-        let each = outputs.len();
-        let rows = Mat::from_fn(each * gradients.len(), d, |row, k| {
-            gradients[row / each][(outputs[row % each], k)]
-        });
-        let eigen = linalg::eigen(linalg::gram(rows.as_ref()))?;
+    /// The regression on inputs that keep their proportions.
+    fn model(&self, z: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Model> {
+        let problem = Problem::in_proportion(z, y)?;
+        let centres = self.centres.min(z.ncols());
+        check::count(centres, z.ncols())?;
+        let spaced: Vec<usize> = (0..centres).map(|c| c * z.ncols() / centres).collect();
+        let kernel = Kernel::Gaussian(self.regression.width);
+        let columns = Columns::of(&problem, problem.features(), kernel, &spaced)?.centred();
+        let mut sums = Sums::new(&columns);
+        sums.add(&columns, z, y)?;
+        Ok(self.regression.fit_sums(&columns, &sums)?.model)
+    }
+
+    /// The root of M, at most so many rows.
+    fn directions(gradients: &[Mat<f64>], most: usize) -> Result<Mat<f64>> {
+        let d = gradients.first().map_or(0, Mat::ncols);
+        let eigen = linalg::eigen(linalg::gram(stacked(gradients, d).as_ref()))?;
         let strongest = eigen.values.first().copied().unwrap_or(0.0);
         let strong = |&k: &usize| eigen.values[k] > 1e-12 * strongest;
-        let kept: Vec<usize> = (0..self.rank.min(d)).filter(strong).collect();
+        let kept: Vec<usize> = (0..most.min(d)).filter(strong).collect();
         // Only proportions matter.
         Ok(Mat::from_fn(kept.len(), d, |r, k| {
             (eigen.values[kept[r]] / strongest).sqrt() * eigen.vectors[(k, kept[r])]
         }))
     }
+}
+
+/// The gradients of some of the targets.
+fn of_group(gradients: &[Mat<f64>], outputs: &[usize]) -> Vec<Mat<f64>> {
+    gradients.iter().map(|gradient| linalg::subrows(gradient.as_ref(), outputs)).collect()
+}
+
+/// A (x − mean) for each column of `x`.
+fn centred_product(a: MatRef<'_, f64>, x: MatRef<'_, f64>, mean: &[f64]) -> Mat<f64> {
+    let mut z = linalg::product(a, x);
+    let offset = linalg::product(a, MatRef::from_column_major_slice(mean, mean.len(), 1));
+    for i in 0..z.ncols() {
+        linalg::axpy(z.col_as_slice_mut(i), -1.0, offset.col_as_slice(0));
+    }
+    z
 }
 
 /// The mean of all inputs, and their blocks' principal components, d×K.
@@ -179,37 +218,4 @@ fn stacked(parts: &[Mat<f64>], d: usize) -> Mat<f64> {
         row += part.nrows();
     }
     all
-}
-
-impl Model {
-    /// How the predictions change with the inputs, m×K in the units of both, at one input.
-    fn gradient(&self, x: faer::ColRef<'_, f64>) -> Result<Mat<f64>> {
-        let parts = self.parts();
-        let mut out = Mat::zeros(self.outputs(), self.inputs());
-        let z: Vec<f64> = parts
-            .features
-            .iter()
-            .enumerate()
-            .map(|(i, &f)| (x[f] - parts.feature_means[i]) / parts.feature_scales[i])
-            .collect();
-        let weights = self.weights();
-        let slopes = match &parts.basis {
-            Basis::Linear => weights.to_owned(),
-            Basis::Gaussian { beta, samples, centres } => {
-                let p = samples.len();
-                let difference = Mat::from_fn(p, z.len(), |k, i| z[i] - centres[i * p + k]);
-                let falls = Mat::from_fn(self.outputs(), p, |j, k| {
-                    let squared: f64 = difference.row(k).iter().map(|v| v * v).sum();
-                    -2.0 * beta * (-beta * squared).exp() * weights[(j, k)]
-                });
-                linalg::product(falls.as_ref(), difference.as_ref())
-            }
-        };
-        for (i, &f) in parts.features.iter().enumerate() {
-            for j in 0..self.outputs() {
-                out[(j, f)] = slopes[(j, i)] / parts.feature_scales[i];
-            }
-        }
-        Ok(out)
-    }
 }

@@ -1,7 +1,6 @@
 //! The test that the paper did not take: motion, hands and cameras that were never seen.
 
 use anyhow::{Context, Result};
-use clap::ValueEnum;
 use phalanx::OrientationRule;
 use serde_json::json;
 
@@ -27,7 +26,7 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
     let ground =
         Ground { rig: lab.rig.clone(), hand: lab.hand.clone(), rule: OrientationRule::default() };
     let sets = all_training_sets(&ground, RANDOM_SAMPLES)?;
-    let methods = Method::value_variants().to_vec();
+    let methods = Method::OF_DESCRIPTORS.to_vec();
     let tests = Test::SYNTHETIC.to_vec();
     let protocol = Protocol { ground: &ground, methods, tests, motion: &[] };
     let (_, rows) = protocol.run(&sets, lab.progress)?;
@@ -72,11 +71,7 @@ fn finding(rows: &[Row], split: [f64; 2]) -> Result<Finding> {
             let name = method.name();
             Ok(unseen(train, name, 3)? < unseen(train, name, 1)?)
         };
-        Method::value_variants()
-            .iter()
-            .filter(|method| **method != Method::Mean)
-            .map(gain)
-            .collect()
+        Method::OF_DESCRIPTORS.iter().filter(|method| **method != Method::Mean).map(gain).collect()
     };
     let claims = [gains("complex")?, gains("random")?];
     let [complex, random_gains] =

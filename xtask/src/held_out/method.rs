@@ -1,11 +1,12 @@
 //! The methods that the held-out table compares.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use faer::{Mat, MatRef};
-use phalanx::Regressor;
+use phalanx::{Preset, Regressor};
 use phalanx_rvm::{KernelRidge, Model, Nystrom, Width};
 
+use super::presets;
 use crate::described::Samples;
 use crate::metrics::mean_predictor;
 use crate::neighbours::nearest_mean;
@@ -29,6 +30,12 @@ pub(crate) enum Method {
     Kernel,
     /// The mean of the five nearest neighbours.
     Knn5,
+    /// The fast preset, whatever the training set.
+    Fast,
+    /// The default preset, whatever the training set.
+    Preset,
+    /// The best preset, whatever the training set.
+    Best,
 }
 
 /// Something that estimates poses from descriptors.
@@ -39,6 +46,20 @@ pub(crate) enum Predictor {
 }
 
 impl Method {
+    /// Those that learn from the paper's descriptors.
+    pub(crate) const OF_DESCRIPTORS: [Self; 7] =
+        [Self::Mean, Self::Lin, Self::Gauss, Self::Both, Self::Forward, Self::Kernel, Self::Knn5];
+
+    /// The preset, of those that are one: they learn from scenes of their own.
+    pub(crate) fn preset(self) -> Option<Preset> {
+        match self {
+            Self::Fast => Some(Preset::Fast),
+            Self::Preset => Some(Preset::Balanced),
+            Self::Best => Some(Preset::Best),
+            _ => None,
+        }
+    }
+
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Mean => "mean",
@@ -48,6 +69,9 @@ impl Method {
             Self::Forward => "forward",
             Self::Kernel => "kernel",
             Self::Knn5 => "knn5",
+            Self::Fast => presets::name(Preset::Fast),
+            Self::Preset => presets::name(Preset::Balanced),
+            Self::Best => presets::name(Preset::Best),
         }
     }
 
@@ -67,6 +91,9 @@ impl Method {
             Self::Knn5 => {
                 let (x, y) = (samples.x.clone(), samples.y.clone());
                 Ok(Predictor::Nearest(Samples { x, y }))
+            }
+            Self::Fast | Self::Preset | Self::Best => {
+                bail!("a preset does not learn from the paper's descriptors")
             }
         }
     }

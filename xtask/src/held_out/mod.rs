@@ -5,6 +5,7 @@ pub(crate) mod errors;
 pub(crate) mod learner;
 mod masks;
 pub(crate) mod method;
+mod presets;
 pub(crate) mod print;
 pub(crate) mod row;
 mod timing;
@@ -14,7 +15,7 @@ use std::process::ExitCode;
 
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
-use phalanx::{OrientationRule, Progress, Scenes};
+use phalanx::{OrientationRule, Preset, Progress, Scenes};
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 use serde::Serialize;
@@ -29,6 +30,7 @@ use errors::Truth;
 use learner::{Learner, describe, learn};
 use masks::Masks;
 use method::Method;
+use presets::Learnt;
 use row::Row;
 
 /// Samples of the random training sets, unless it is said how many.
@@ -49,7 +51,8 @@ pub(crate) struct Arguments {
     /// The tests, separated by commas; all by default.
     #[arg(long, value_enum, value_delimiter = ',')]
     tests: Vec<Test>,
-    /// The methods, separated by commas; all by default.
+    /// The methods, separated by commas; all but `fast` and `best` by default. The presets learn from
+    /// scenes of their own, through one view, two and all.
     #[arg(long, value_enum, value_delimiter = ',')]
     methods: Vec<Method>,
     /// Motion from outside to test on, CSV, degrees; where θ_Z does not vary in it, each pose is
@@ -144,8 +147,13 @@ fn rows(
     let motion = arguments.poses.as_deref().map(files::poses).transpose()?;
     let motion = motion.map_or_else(Vec::new, |table| table.poses);
     let (sets, tests) = (training_sets(arguments, ground)?, tests(arguments)?);
-    let protocol = Protocol { ground, methods: methods(arguments), tests, motion: &motion };
+    let methods = methods(arguments);
+    let presets: Vec<Preset> = methods.iter().filter_map(|method| method.preset()).collect();
+    let methods = methods.into_iter().filter(|method| method.preset().is_none()).collect();
+    let protocol = Protocol { ground, methods, tests, motion: &motion };
     let (learners, mut rows) = protocol.run(&sets, progress)?;
+    let learnt = presets::learn(&presets, ground, progress)?;
+    rows.extend(protocol.test_presets(&learnt, progress)?);
     if let Some(masks) = masks {
         rows.extend(masks.test(&learners, ground)?);
     }
@@ -174,15 +182,26 @@ impl Protocol<'_> {
         let Self { ground, methods, tests, motion } = self;
         let views = views(&ground.rig);
         let mut learners = Vec::new();
-        for set in sets {
+        for set in sets.iter().filter(|_| !methods.is_empty()) {
             learners.extend(learn(set, &views, ground.rule, methods, progress)?);
         }
         let mut rows = Vec::new();
-        for test in tests {
+        for test in tests.iter().filter(|_| !learners.is_empty()) {
             let set = test.set(&ground.rig, &ground.hand, motion);
             rows.extend(test_on(&set, &learners, ground, progress)?);
         }
         Ok((learners, rows))
+    }
+
+    /// Takes every test with presets.
+    fn test_presets(&self, learnt: &[Learnt], progress: &dyn Progress) -> Result<Vec<Row>> {
+        let Self { ground, tests, motion, .. } = self;
+        let mut rows = Vec::new();
+        for test in tests.iter().filter(|_| !learnt.is_empty()) {
+            let set = test.set(&ground.rig, &ground.hand, motion);
+            rows.extend(presets::test(&set, learnt, ground, progress)?);
+        }
+        Ok(rows)
     }
 }
 
@@ -234,8 +253,10 @@ fn stored<'a>(name: &'static str, ground: &'a Ground) -> Result<Set<'a>> {
 }
 
 fn methods(arguments: &Arguments) -> Vec<Method> {
-    let all = Method::value_variants();
-    if arguments.methods.is_empty() { all.to_vec() } else { arguments.methods.clone() }
+    if !arguments.methods.is_empty() {
+        return arguments.methods.clone();
+    }
+    Method::OF_DESCRIPTORS.into_iter().chain([Method::Preset]).collect()
 }
 
 /// The synthetic tests. `poses` is one of them where there is motion from outside.

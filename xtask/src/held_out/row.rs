@@ -1,6 +1,7 @@
 //! One row of the held-out table.
 
 use anyhow::{Context, Result};
+use faer::MatRef;
 use phalanx_hand::Dof;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -49,29 +50,58 @@ pub(crate) fn rows(
         .collect();
     let row =
         |&(learner, samples, (method, predictor)): &(&Learner, &Samples, &(Method, Predictor))| {
-            let errors = |estimates: &faer::Mat<f64>| {
-                AngleErrors::new(estimates.as_ref(), truth.poses.as_ref(), &active_angles())
-            };
             let estimates = predictor.predict(samples.x.as_ref())?;
             let guesses = learner.mean.predict(samples.x.as_ref())?;
-            let of_method = errors(&estimates);
-            let (worst_dof, worst_deg) = of_method.worst();
-            let (theta_z_mae_deg, _) = of_method.of(Dof::ThetaZ).context("θ_Z is compared")?;
-            Ok(Row {
+            let outcome = Outcome {
                 train: learner.train,
                 train_samples: learner.train_samples,
-                test,
                 method: method.name(),
                 views: learner.codebooks.views.len(),
-                mae_deg: of_method.mae(),
-                theta_z_mae_deg,
-                worst_deg,
-                worst_dof: worst_dof.name(),
-                joint_error_mm: truth.joint_error_mm(estimates.as_ref(), ground),
                 kept_samples: predictor.kept_samples(),
-                mean_predictor_mae_deg: errors(&guesses).mae(),
-                us_per_estimate: None,
-            })
+            };
+            outcome.row(test, estimates.as_ref(), guesses.as_ref(), truth, ground)
         };
     work.par_iter().map(row).collect()
+}
+
+/// What has been learnt, and from what.
+pub(crate) struct Outcome {
+    pub(crate) train: &'static str,
+    pub(crate) train_samples: usize,
+    pub(crate) method: &'static str,
+    pub(crate) views: usize,
+    pub(crate) kept_samples: usize,
+}
+
+impl Outcome {
+    /// The row of its estimates on a test, beside guesses; poses, 28 × T.
+    pub(crate) fn row(
+        self,
+        test: &'static str,
+        estimates: MatRef<'_, f64>,
+        guesses: MatRef<'_, f64>,
+        truth: &Truth,
+        ground: &Ground,
+    ) -> Result<Row> {
+        let errors = |of| AngleErrors::new(of, truth.poses.as_ref(), &active_angles());
+        let of_method = errors(estimates);
+        let (worst_dof, worst_deg) = of_method.worst();
+        let (theta_z_mae_deg, _) = of_method.of(Dof::ThetaZ).context("θ_Z is compared")?;
+        let Self { train, train_samples, method, views, kept_samples } = self;
+        Ok(Row {
+            train,
+            train_samples,
+            test,
+            method,
+            views,
+            mae_deg: of_method.mae(),
+            theta_z_mae_deg,
+            worst_deg,
+            worst_dof: worst_dof.name(),
+            joint_error_mm: truth.joint_error_mm(estimates, ground),
+            kept_samples,
+            mean_predictor_mae_deg: errors(guesses).mae(),
+            us_per_estimate: None,
+        })
+    }
 }

@@ -1,5 +1,6 @@
 //! The fitted regressor: one type, whichever way it was fitted.
 
+mod gradient;
 mod parts;
 mod predict;
 
