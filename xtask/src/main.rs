@@ -24,6 +24,7 @@ mod plate;
 mod postures;
 mod principal_axes;
 mod progress;
+mod refine_trial;
 mod report;
 mod saturation;
 mod scale;
@@ -82,6 +83,7 @@ enum Command {
     Headline(headline::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
     Pictures(pictures::Arguments),
+    RefineTrial(refine_trial::Arguments),
     /// Time every stage and write docs/performance.md.
     Performance(performance::Arguments),
 }
@@ -120,6 +122,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::SkinModel(arguments) => skin_model::run(arguments)?,
         Command::ContactSheet(arguments) => contact_sheet::run(arguments)?,
         Command::Pictures(arguments) => pictures::run(arguments)?,
+        Command::RefineTrial(arguments) => refine_trial::run(arguments)?,
         Command::Performance(arguments) => performance::run(arguments)?,
     }
     Ok(ExitCode::SUCCESS)

@@ -88,6 +88,10 @@ const TRAINING: &[Row] = &[
     ("fit 837x90 to 24/forward gaussian to 40", "the same: forward selection, Gaussian, 40 samples", None),
     ("fit 837x90 to 24/Tipping linear", "the same: Tipping for each output, linear", None),
     ("fit 837x90 to 24/kernel ridge, 7 lambdas", "the same: kernel ridge, 7 penalties to choose from", None),
+    ("sums over 1000 Gaussians of 90 inputs/add a block of 512", "add 512 samples to the sums over 1,000 Gaussian columns", None),
+    ("sums over 1000 Gaussians of 90 inputs/Nyström, 6 lambdas", "fit from these sums: Nyström, 6 penalties to choose from", None),
+    ("sums over 1000 Gaussians of 90 inputs/forward to 40", "the same: forward selection of 40", None),
+    ("sums over 1000 Gaussians of 90 inputs/bridges to 40", "the same: bridges to 40", None),
 ];
 
 fn rows() -> impl Iterator<Item = &'static Row> {

@@ -2,7 +2,8 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::{Ball, Digit, Dof, FingerShape, HandShape, Pose, Primitive, Side, ThumbShape};
+use crate::motion::{Motion, Motions};
+use crate::{Ball, Digit, Dof, FingerShape, HandShape, Link, Pose, Primitive, Side, ThumbShape};
 
 /// How many joints a posed hand reports.
 pub const JOINTS: usize = 21;
@@ -15,12 +16,36 @@ pub struct PosedHand {
     pub joints: [DVec3; JOINTS],
     /// The solids whose union is the hand and forearm, mm.
     pub primitives: Vec<Primitive>,
+    /// What the balls of each solid move with, in the order of its balls; the last is repeated
+    /// where there are fewer than three.
+    pub links: Vec<[Link; 3]>,
 }
 
-/// A digit's four joints and the directions of its three segments.
+/// A digit's four joints, the directions of its three segments and the axes that it turns about.
 struct Chain {
     joints: [DVec3; 4],
     directions: [DVec3; 3],
+    abduction_axis: DVec3,
+    flexion_axis: DVec3,
+}
+
+/// The solids of a hand as they are made, each with what its balls move with.
+#[derive(Default)]
+struct Solids {
+    primitives: Vec<Primitive>,
+    links: Vec<[Link; 3]>,
+}
+
+impl Solids {
+    fn wedge(&mut self, corners: [(Ball, Link); 3]) {
+        self.primitives.push(Primitive::Wedge(corners.map(|(ball, _)| ball)));
+        self.links.push(corners.map(|(_, link)| link));
+    }
+
+    fn round_cone(&mut self, ends: [(Ball, Link); 2]) {
+        self.primitives.push(Primitive::RoundCone(ends.map(|(ball, _)| ball)));
+        self.links.push([ends[0].1, ends[1].1, ends[1].1]);
+    }
 }
 
 impl HandShape {
@@ -30,30 +55,68 @@ impl HandShape {
     /// A left hand is the mirror image in its own frame: its joint angles mean the same, its
     /// orientation is mirrored with it (θ_Z = 90° has the thumb up too), its position is not.
     pub fn pose(&self, pose: &Pose, rest: &DAffine3) -> PosedHand {
-        let palm = DMat3::from_rotation_y(pose[Dof::WristDeviation])
-            * DMat3::from_rotation_x(pose[Dof::WristFlexion]);
+        let palm = palm_rotation(pose);
         let chains = self.chains(pose).map(|chain| chain.turned(palm));
 
         let mut joints = [DVec3::ZERO; JOINTS];
         for (digit, chain) in chains.iter().enumerate() {
             joints[1 + 4 * digit..5 + 4 * digit].copy_from_slice(&chain.joints);
         }
-        let primitives = self.solids(&chains, palm);
+        let solids = self.solids(&chains, palm);
 
         let motion = *rest * self.global_motion(pose);
         PosedHand {
             joints: joints.map(|joint| motion.transform_point3(joint)),
-            primitives: primitives.iter().map(|solid| solid.moved(&motion)).collect(),
+            primitives: solids.primitives.iter().map(|solid| solid.moved(&motion)).collect(),
+            links: solids.links,
         }
+    }
+
+    /// How each number of the pose moves the hand, in world coordinates: the derivative of
+    /// [`pose`](Self::pose) in closed form.
+    pub fn motions(&self, pose: &Pose, rest: &DAffine3) -> Motions {
+        let (palm, rotation) = (palm_rotation(pose), pose.rotation());
+        let own = *rest * self.global_motion(pose);
+        // A mirror turns the sense of rotations about it.
+        let turn = |frame: DMat3, axis: DVec3, origin: DVec3| Motion::Turn {
+            axis: frame * axis * frame.determinant().signum(),
+            origin: own.transform_point3(origin),
+        };
+        let outer = rest.matrix3 * self.mirror();
+        let about_x = DMat3::from_rotation_x(pose[Dof::ThetaX]);
+        let about_y = about_x * DMat3::from_rotation_y(pose[Dof::ThetaY]);
+        let deviated = rotation * DMat3::from_rotation_y(pose[Dof::WristDeviation]);
+        let mut motions = [Motion::Shift(DVec3::ZERO); Dof::COUNT];
+        let mut set = |dof: Dof, motion: Motion| motions[dof.index()] = motion;
+        set(Dof::ThetaX, turn(outer, DVec3::X, DVec3::ZERO));
+        set(Dof::ThetaY, turn(outer, about_x.y_axis, DVec3::ZERO));
+        set(Dof::ThetaZ, turn(outer, about_y.z_axis, DVec3::ZERO));
+        set(Dof::TX, Motion::Shift(rest.matrix3.x_axis));
+        set(Dof::TY, Motion::Shift(rest.matrix3.y_axis));
+        set(Dof::TZ, Motion::Shift(rest.matrix3.z_axis));
+        set(Dof::WristDeviation, turn(outer, rotation.y_axis, DVec3::ZERO));
+        set(Dof::WristFlexion, turn(outer, deviated.x_axis, DVec3::ZERO));
+        let chains = self.chains(pose).map(|chain| chain.turned(palm));
+        for (digit, chain) in Digit::ALL.into_iter().zip(chains) {
+            let [abduction, flexions @ ..] = digit.dofs();
+            set(abduction, turn(own.matrix3, chain.abduction_axis, chain.joints[0]));
+            for (flexion, joint) in flexions.into_iter().zip(chain.joints) {
+                set(flexion, turn(own.matrix3, chain.flexion_axis, joint));
+            }
+        }
+        Motions(motions)
     }
 
     /// From the right hand's own frame to the frame of the hand at rest.
     fn global_motion(&self, pose: &Pose) -> DAffine3 {
-        let mirror = match self.side {
+        DAffine3::from_mat3_translation(self.mirror() * pose.rotation(), pose.translation())
+    }
+
+    fn mirror(&self) -> DMat3 {
+        match self.side {
             Side::Right => DMat3::IDENTITY,
             Side::Left => DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0)),
-        };
-        DAffine3::from_mat3_translation(mirror * pose.rotation(), pose.translation())
+        }
     }
 
     /// The five digits, thumb first, in the palm's frame.
@@ -66,14 +129,15 @@ impl HandShape {
     }
 
     /// Every solid, in the frame of the forearm; `palm` is the wrist's rotation.
-    fn solids(&self, chains: &[Chain; 5], palm: DMat3) -> Vec<Primitive> {
-        let mut solids = Vec::with_capacity(32);
-        solids.push(self.forearm_solid());
+    fn solids(&self, chains: &[Chain; 5], palm: DMat3) -> Solids {
+        let mut solids = Solids::default();
+        solids.primitives.push(self.forearm_solid());
+        solids.links.push([Link::Forearm; 3]);
         self.push_palm(&mut solids, chains, palm);
         self.push_thumb_ball(&mut solids, chains, palm);
-        solids.extend(chains[0].solids(&self.thumb.radii_mm));
-        for (finger, chain) in self.fingers().into_iter().zip(&chains[1..]) {
-            solids.extend(chain.solids(&finger.radii_mm));
+        chains[0].push_segments(&mut solids, Digit::Thumb, &self.thumb.radii_mm);
+        for (k, finger) in self.fingers().into_iter().enumerate() {
+            chains[k + 1].push_segments(&mut solids, Digit::FINGERS[k], &finger.radii_mm);
         }
         solids
     }
@@ -91,49 +155,48 @@ impl HandShape {
 
     /// The slab between the wrist and the knuckles, the heel of the hand, and the webs between
     /// the fingers.
-    fn push_palm(&self, solids: &mut Vec<Primitive>, chains: &[Chain; 5], palm: DMat3) {
+    fn push_palm(&self, solids: &mut Solids, chains: &[Chain; 5], palm: DMat3) {
         let shape = &self.palm;
-        let [thumb_side, little_side] = self.wrist_balls(palm);
-        let knuckles: [Ball; 4] =
-            std::array::from_fn(|k| Ball::new(chains[k + 1].joints[0], shape.knuckle_radii_mm[k]));
+        let [thumb_side, little_side] = self.wrist_balls(palm).map(|ball| (ball, Link::Palm));
+        let knuckles: [(Ball, Link); 4] = std::array::from_fn(|k| {
+            (Ball::new(chains[k + 1].joints[0], shape.knuckle_radii_mm[k]), Link::Palm)
+        });
         let [index, middle, ring, little] = knuckles;
-        let heel = Ball::new(palm * shape.heel_mm, shape.heel_radius_mm);
-        solids.extend([
-            Primitive::Wedge([thumb_side, index, middle]),
-            Primitive::Wedge([thumb_side, little_side, middle]),
-            Primitive::Wedge([little_side, middle, ring]),
-            Primitive::Wedge([little_side, heel, ring]),
-            Primitive::Wedge([heel, ring, little]),
-        ]);
+        let heel = (Ball::new(palm * shape.heel_mm, shape.heel_radius_mm), Link::Palm);
+        solids.wedge([thumb_side, index, middle]);
+        solids.wedge([thumb_side, little_side, middle]);
+        solids.wedge([little_side, middle, ring]);
+        solids.wedge([little_side, heel, ring]);
+        solids.wedge([heel, ring, little]);
         let fingers = self.fingers();
         for pair in 0..3 {
             let web = |k: usize| {
                 let chain = &chains[k + 1];
                 let along = shape.web_reach * fingers[k].lengths_mm[0];
-                Ball::new(chain.joints[0] + chain.directions[0] * along, shape.web_radius_mm)
+                let center = chain.joints[0] + chain.directions[0] * along;
+                (Ball::new(center, shape.web_radius_mm), Link::Segment(Digit::FINGERS[k], 0))
             };
             let (near, next) = (web(pair), web(pair + 1));
-            solids.push(Primitive::Wedge([knuckles[pair], near, next]));
-            solids.push(Primitive::Wedge([knuckles[pair], knuckles[pair + 1], next]));
+            solids.wedge([knuckles[pair], near, next]);
+            solids.wedge([knuckles[pair], knuckles[pair + 1], next]);
         }
     }
 
     /// The ball of the thumb and the web between thumb and index finger.
-    fn push_thumb_ball(&self, solids: &mut Vec<Primitive>, chains: &[Chain; 5], palm: DMat3) {
+    fn push_thumb_ball(&self, solids: &mut Solids, chains: &[Chain; 5], palm: DMat3) {
         let shape = &self.palm;
-        let [thumb_side, _] = self.wrist_balls(palm);
+        let metacarpal = Link::Segment(Digit::Thumb, 0);
+        let [thumb_side, _] = self.wrist_balls(palm).map(|ball| (ball, Link::Palm));
         let [base, mcp, ..] = chains[0].joints;
         let index_knuckle = chains[1].joints[0];
         let [base_radius, mcp_radius, ..] = self.thumb.radii_mm;
         let thin = |at: DVec3| Ball::new(at, shape.thumb_web_radius_mm);
-        let base = Ball::new(base, base_radius);
-        solids.extend([
-            Primitive::Wedge([thumb_side, base, Ball::new(mcp, mcp_radius)]),
-            Primitive::Wedge([
-                base,
-                thin(base.center.lerp(mcp, 0.85)),
-                thin(thumb_side.center.lerp(index_knuckle, 0.8)),
-            ]),
+        let root = (Ball::new(base, base_radius), metacarpal);
+        solids.wedge([thumb_side, root, (Ball::new(mcp, mcp_radius), metacarpal)]);
+        solids.wedge([
+            root,
+            (thin(base.lerp(mcp, 0.85)), metacarpal),
+            (thin(thumb_side.0.center.lerp(index_knuckle, 0.8)), Link::Palm),
         ]);
     }
 
@@ -154,7 +217,7 @@ impl ThumbShape {
             * DMat3::from_rotation_z(-self.roll_deg.to_radians());
         let [abduction, flexions @ ..] = Digit::Thumb.dofs().map(|dof| pose[dof]);
         let frame = rest * DMat3::from_rotation_y(abduction);
-        Chain::bent(self.base_mm, frame, flexions, self.lengths_mm)
+        Chain::bent(self.base_mm, frame, rest.y_axis, flexions, self.lengths_mm)
     }
 }
 
@@ -164,13 +227,19 @@ impl FingerShape {
         // Away from the middle finger is towards -X for the ring and the little finger.
         let outwards = if matches!(finger, Digit::Ring | Digit::Little) { -1.0 } else { 1.0 };
         let frame = DMat3::from_rotation_y(self.splay_deg.to_radians() + outwards * abduction);
-        Chain::bent(self.base_mm, frame, flexions, self.lengths_mm)
+        Chain::bent(self.base_mm, frame, DVec3::Y * outwards, flexions, self.lengths_mm)
     }
 }
 
 impl Chain {
     /// A planar chain from `base`: +Z of `frame` is its direction, +X its flexion axis.
-    fn bent(base: DVec3, frame: DMat3, flexions: [f64; 3], lengths: [f64; 3]) -> Self {
+    fn bent(
+        base: DVec3,
+        frame: DMat3,
+        abduction_axis: DVec3,
+        flexions: [f64; 3],
+        lengths: [f64; 3],
+    ) -> Self {
         let mut joints = [base; 4];
         let mut directions = [DVec3::Z; 3];
         let mut flexion = 0.0;
@@ -179,20 +248,30 @@ impl Chain {
             directions[segment] = frame * DMat3::from_rotation_x(flexion).z_axis;
             joints[segment + 1] = joints[segment] + directions[segment] * lengths[segment];
         }
-        Self { joints, directions }
+        Self { joints, directions, abduction_axis, flexion_axis: frame.x_axis }
     }
 
     fn turned(self, rotation: DMat3) -> Self {
         Self {
             joints: self.joints.map(|joint| rotation * joint),
             directions: self.directions.map(|direction| rotation * direction),
+            abduction_axis: rotation * self.abduction_axis,
+            flexion_axis: rotation * self.flexion_axis,
         }
     }
 
     /// The three segments; the last ball ends at the skin.
-    fn solids(&self, radii: &[f64; 4]) -> [Primitive; 3] {
+    fn push_segments(&self, solids: &mut Solids, digit: Digit, radii: &[f64; 4]) {
         let mut balls: [Ball; 4] = std::array::from_fn(|k| Ball::new(self.joints[k], radii[k]));
         balls[3].center -= self.directions[2] * radii[3];
-        std::array::from_fn(|k| Primitive::RoundCone([balls[k], balls[k + 1]]))
+        for segment in 0..3 {
+            let link = Link::Segment(digit, segment);
+            solids.round_cone([(balls[segment], link), (balls[segment + 1], link)]);
+        }
     }
+}
+
+fn palm_rotation(pose: &Pose) -> DMat3 {
+    DMat3::from_rotation_y(pose[Dof::WristDeviation])
+        * DMat3::from_rotation_x(pose[Dof::WristFlexion])
 }

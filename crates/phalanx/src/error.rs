@@ -42,6 +42,9 @@ pub enum Error {
     /// The hand is unusable.
     #[error(transparent)]
     Hand(#[from] phalanx_hand::Error),
+    /// The hand could not be fitted to silhouettes.
+    #[error(transparent)]
+    Refine(#[from] phalanx_refine::Error),
     /// The views could not be joined.
     #[error(transparent)]
     Views(#[from] phalanx_multiview::Error),

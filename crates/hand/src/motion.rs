@@ -1,0 +1,73 @@
+//! The derivative of forward kinematics: what moves with which numbers of a pose.
+
+use glam::DVec3;
+
+use crate::{Digit, Dof};
+
+/// A rigid part of the hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Link {
+    /// What is behind the wrist: moved by the global numbers alone.
+    Forearm,
+    /// The palm: moved by the wrist too.
+    Palm,
+    /// A digit's segment, 0 to 2 from its base outwards: moved by its abduction and the flexions
+    /// up to its own too.
+    Segment(Digit, usize),
+}
+
+impl Link {
+    /// Whether a number of the pose moves this part.
+    pub fn is_moved_by(self, dof: Dof) -> bool {
+        self.dofs().any(|own| own == dof)
+    }
+
+    /// The numbers of the pose that move this part: at most 12.
+    pub fn dofs(self) -> impl Iterator<Item = Dof> {
+        let global = 6;
+        let (wrist, digit) = match self {
+            Self::Forearm => (0, None),
+            Self::Palm => (2, None),
+            Self::Segment(digit, segment) => (2, Some((digit, segment + 2))),
+        };
+        let first = Dof::INTERNAL + 2 - wrist;
+        let of_digit =
+            digit.into_iter().flat_map(|(digit, count)| digit.dofs().into_iter().take(count));
+        of_digit.chain((first..first + wrist + global).map(|index| Dof::ALL[index]))
+    }
+}
+
+/// How one number of a pose moves what hangs on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Motion {
+    /// About a line.
+    Turn {
+        /// The unit direction of the line.
+        axis: DVec3,
+        /// A point on it, mm.
+        origin: DVec3,
+    },
+    /// Along a unit direction.
+    Shift(DVec3),
+}
+
+impl Motion {
+    /// The velocity of a point, mm per radian or per millimetre.
+    pub fn velocity(&self, point: DVec3) -> DVec3 {
+        match self {
+            Self::Turn { axis, origin } => axis.cross(point - *origin),
+            Self::Shift(direction) => *direction,
+        }
+    }
+}
+
+/// How each number of a pose moves what hangs on it ([`Link::dofs`]), in world coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motions(pub(crate) [Motion; Dof::COUNT]);
+
+impl Motions {
+    /// Of one number.
+    pub fn of(&self, dof: Dof) -> &Motion {
+        &self.0[dof.index()]
+    }
+}

@@ -1,0 +1,44 @@
+//! The closed-form derivative of forward kinematics against central differences.
+
+use glam::{DAffine3, DQuat, DVec3};
+use phalanx_hand::{Dof, HandShape, Pose, Side};
+use proptest::prelude::*;
+
+const STEP: f64 = 1e-5;
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(32) })]
+
+    #[test]
+    fn balls_move_as_the_motions_say(
+        numbers in prop::array::uniform28(-1.0..1.0_f64),
+        side in prop_oneof![Just(Side::Right), Just(Side::Left)],
+        turn in prop::array::uniform3(-1.0..1.0_f64),
+    ) {
+        let shape = HandShape { side, ..HandShape::adult() };
+        let rotation = DQuat::from_scaled_axis(DVec3::from_array(turn));
+        let rest = DAffine3::from_rotation_translation(rotation, DVec3::new(3.0, -70.0, 11.0));
+        let pose = Pose(numbers);
+        let (hand, motions) = (shape.pose(&pose, &rest), shape.motions(&pose, &rest));
+        for dof in Dof::ALL {
+            let shifted = |step: f64| {
+                let mut shifted = pose;
+                shifted[dof] += step;
+                shape.pose(&shifted, &rest)
+            };
+            let (ahead, behind) = (shifted(STEP), shifted(-STEP));
+            for (solid, links) in hand.links.iter().enumerate() {
+                for (k, ball) in hand.primitives[solid].balls().iter().enumerate() {
+                    let (a, b) = (ahead.primitives[solid].balls()[k], behind.primitives[solid].balls()[k]);
+                    let slope = (a.center - b.center) / (2.0 * STEP);
+                    let velocity = motions.of(dof).velocity(ball.center);
+                    let velocity = if links[k].is_moved_by(dof) { velocity } else { DVec3::ZERO };
+                    prop_assert!(
+                        slope.abs_diff_eq(velocity, 1e-5),
+                        "{dof}, solid {solid}, ball {k}: {slope} is not {velocity}"
+                    );
+                }
+            }
+        }
+    }
+}

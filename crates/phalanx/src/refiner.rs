@@ -1,0 +1,92 @@
+//! Estimates made better by drawing the hand and comparing.
+
+use glam::DAffine3;
+use phalanx_camera::{Camera, Rig};
+use phalanx_hand::{Dof, HandShape, Pose};
+use phalanx_refine::{Evidence, PosePrior, Refined, Refinement};
+use phalanx_segmentation::Silhouette;
+
+use crate::{Estimate, Result, working_camera};
+
+/// Fits the hand to the silhouettes that it was estimated from.
+#[derive(Debug, Clone)]
+pub struct Refiner {
+    cameras: Vec<Camera>,
+    rest: DAffine3,
+    hand: HandShape,
+    postures: PosePrior,
+    refinement: Refinement,
+}
+
+impl Refiner {
+    /// For silhouettes at the working size from a rig's cameras. `poses` tell which numbers vary and
+    /// how they go together, as those that an estimator was learnt from do.
+    ///
+    /// # Errors
+    /// A camera without a window of the working size's shape, a hand that no one has, fewer than two
+    /// different poses.
+    pub fn new(
+        rig: &Rig,
+        hand: &HandShape,
+        poses: &[Pose],
+        refinement: Refinement,
+    ) -> Result<Self> {
+        hand.validate()?;
+        Ok(Self {
+            cameras: rig.cameras.iter().map(working_camera).collect::<Result<_>>()?,
+            rest: rig.volume.rest_frame(),
+            hand: hand.clone(),
+            postures: PosePrior::of_poses(poses)?,
+            refinement,
+        })
+    }
+
+    /// The same for another hand, such as a calibrated one.
+    ///
+    /// # Errors
+    /// A hand that no one has.
+    pub fn with_hand(&self, hand: &HandShape) -> Result<Self> {
+        hand.validate()?;
+        Ok(Self { hand: hand.clone(), ..self.clone() })
+    }
+
+    /// The hand that is fitted.
+    pub fn hand(&self) -> &HandShape {
+        &self.hand
+    }
+
+    /// The hand's frame at rest, to the world.
+    pub fn rest(&self) -> &DAffine3 {
+        &self.rest
+    }
+
+    /// What silhouettes at the working size, one per camera, tell.
+    ///
+    /// # Errors
+    /// A silhouette of another size, or without a border.
+    pub fn evidence(&self, silhouettes: &[Silhouette]) -> Result<Vec<Evidence>> {
+        let pairs = self.cameras.iter().zip(silhouettes);
+        let evidence = pairs.map(|(camera, seen)| Evidence::new(camera, &seen.mask));
+        Ok(evidence.collect::<Result<_, _>>()?)
+    }
+
+    /// What is known of a pose once it was estimated: that, and how numbers go together. Numbers that
+    /// did not vary where the estimator learnt stay as estimated.
+    ///
+    /// # Errors
+    /// An estimate that is not finite.
+    pub fn prior(&self, pose: &Pose, std: &[f64; Dof::COUNT]) -> Result<PosePrior> {
+        Ok(PosePrior::independent(*pose, std)?.and(&self.postures)?)
+    }
+
+    /// Refines an estimate.
+    ///
+    /// # Errors
+    /// Silhouettes of another number or size than the cameras', or without a border.
+    pub fn refine(&self, silhouettes: &[Silhouette], estimate: &Estimate) -> Result<Refined> {
+        let prior = self.prior(&estimate.pose, &estimate.std)?;
+        let evidence = self.evidence(silhouettes)?;
+        let start = prior.mean();
+        Ok(self.refinement.run(&self.hand, &self.rest, &evidence, start, &prior)?)
+    }
+}

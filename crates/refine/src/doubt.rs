@@ -1,0 +1,71 @@
+//! What may be otherwise than it was given: the hand's proportions, where the cameras stand.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use phalanx_camera::{Camera, Extrinsics};
+
+/// How uncertain a hand's proportions are: standard deviations of logarithms.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HandDoubt {
+    /// Of the hand's size.
+    pub size: f64,
+    /// Of every bone and radius.
+    pub each: f64,
+}
+
+/// How uncertain it is where each camera stands, about and along each axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CameraDoubt {
+    /// Standard deviation of its turn about the middle of the volume, radians.
+    pub turn: f64,
+    /// Standard deviation of its shift, mm.
+    pub shift: f64,
+    /// Whether it stands elsewhere in every frame.
+    pub moves: Moves,
+}
+
+/// When cameras move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Moves {
+    /// They stand where they stand, if elsewhere than their calibration says.
+    Never,
+    /// From frame to frame.
+    EveryFrame,
+}
+
+/// A camera that stands elsewhere sees what it would see, where it should stand, of a hand that is
+/// moved the other way: this is how the hand seems moved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Correction {
+    /// Scaled axis, radians.
+    pub(crate) turn: DVec3,
+    /// mm.
+    pub(crate) shift: DVec3,
+}
+
+impl Correction {
+    pub(crate) const NONE: Self = Self { turn: DVec3::ZERO, shift: DVec3::ZERO };
+    pub(crate) const NUMBERS: usize = 6;
+
+    /// The motion of the hand, which turns about `pivot`.
+    pub(crate) fn motion(&self, pivot: DVec3) -> DAffine3 {
+        let rotation = DMat3::from_quat(DQuat::from_scaled_axis(self.turn));
+        DAffine3::from_mat3_translation(rotation, pivot - rotation * pivot + self.shift)
+    }
+
+    /// The camera where it really stands.
+    pub(crate) fn camera(&self, given: &Camera, pivot: DVec3) -> Camera {
+        let motion = self.motion(pivot);
+        let Extrinsics { rotation, translation } = given.extrinsics;
+        let extrinsics = Extrinsics {
+            rotation: rotation * motion.matrix3,
+            translation: rotation * motion.translation + translation,
+        };
+        Camera { extrinsics, ..given.clone() }
+    }
+
+    /// The same after a step.
+    pub(crate) fn stepped(&mut self, step: &[f64]) {
+        self.turn += DVec3::from_slice(&step[..3]);
+        self.shift += DVec3::from_slice(&step[3..]);
+    }
+}

@@ -1,0 +1,337 @@
+//! The energy of a fit, and its normal equations.
+
+use std::borrow::Cow;
+
+use glam::{DAffine3, DMat3, DVec3};
+use phalanx_hand::{Dof, HandShape, Link, Motions, Pose, PosedHand, Primitive};
+
+use crate::doubt::{CameraDoubt, Correction, HandDoubt, Moves};
+use crate::proportions::{Proportions, Slope};
+use crate::system::{FrameSystem, Row};
+use crate::view::{Match, View};
+use crate::{Evidence, PosePrior, Result};
+
+/// One frame: what its cameras saw, and what is known of its pose.
+#[derive(Clone, Copy)]
+pub(crate) struct Frame<'a> {
+    pub(crate) evidence: &'a [Evidence],
+    pub(crate) prior: &'a PosePrior,
+}
+
+/// What is fitted besides the poses.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Freedom {
+    pub(crate) hand: Option<HandDoubt>,
+    pub(crate) cameras: Option<CameraDoubt>,
+}
+
+/// The unknowns of one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Moment {
+    pub(crate) pose: Pose,
+    /// How far each view's border lies outside the hand's, px: what segmentation adds all around or
+    /// takes away.
+    pub(crate) margins: Vec<f64>,
+    /// Of cameras that stand elsewhere in every frame; none of others.
+    pub(crate) corrections: Vec<Correction>,
+}
+
+/// What all frames share.
+#[derive(Debug, Clone)]
+pub(crate) struct Shared {
+    pub(crate) proportions: Proportions,
+    /// Of cameras that stand where they stand; none of others.
+    pub(crate) corrections: Vec<Correction>,
+}
+
+/// The robust measure of residuals (Geman and McClure 1987).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Measure {
+    /// Residuals well beyond this, px, do not count.
+    pub(crate) reach: f64,
+    /// Standard deviation of a border's place, px.
+    pub(crate) noise: f64,
+    /// Standard deviation of what segmentation adds to or takes from a whole border, px.
+    pub(crate) margin: f64,
+    /// Of so many cracks one is looked at.
+    pub(crate) every: usize,
+}
+
+impl Measure {
+    fn energy(&self, residual: f64) -> f64 {
+        let (s, r) = (self.reach * self.reach, residual * residual);
+        0.5 * s * r / (s + r) * self.every as f64 / (self.noise * self.noise)
+    }
+
+    fn weight(&self, residual: f64) -> f64 {
+        let s = self.reach * self.reach;
+        let w = s / (s + residual * residual);
+        w * w * self.every as f64 / (self.noise * self.noise)
+    }
+}
+
+/// A fit of one hand to what cameras saw.
+pub(crate) struct Problem<'a> {
+    pub(crate) given: &'a HandShape,
+    pub(crate) rest: &'a DAffine3,
+    pub(crate) frames: Vec<Frame<'a>>,
+    pub(crate) freedom: Freedom,
+}
+
+/// A contact between a ray and a posed hand, in the world.
+struct Contact<'a> {
+    links: &'a [Link; 3],
+    /// The balls' weights in the place that the ray passes.
+    weights: [f64; 3],
+    /// What moves there, with weights: the balls' centres, or one point of a squashed solid.
+    points: [(f64, DVec3); 3],
+    /// ∂residual of a shift, px/mm.
+    normal: DVec3,
+}
+
+impl Problem<'_> {
+    /// The unknowns of a frame before anything is known but a pose.
+    pub(crate) fn moment(&self, frame: usize, pose: &Pose) -> Moment {
+        let views = self.frames[frame].evidence.len();
+        let each = self.freedom.cameras.is_some_and(|doubt| doubt.moves == Moves::EveryFrame);
+        Moment {
+            pose: *pose,
+            margins: vec![0.0; views],
+            corrections: vec![Correction::NONE; if each { views } else { 0 }],
+        }
+    }
+
+    /// What all frames share before anything is known.
+    pub(crate) fn shared(&self) -> Shared {
+        let views = self.frames.first().map_or(0, |frame| frame.evidence.len());
+        let all = self.freedom.cameras.is_some_and(|doubt| doubt.moves == Moves::Never);
+        Shared {
+            proportions: Proportions::of(self.given),
+            corrections: vec![Correction::NONE; if all { views } else { 0 }],
+        }
+    }
+
+    /// What is known of the shared numbers: their energy, and for each its Hessian and gradient.
+    pub(crate) fn shared_prior(&self, shared: &Shared) -> (f64, Vec<Known>) {
+        let mut known = Vec::new();
+        if let Some(HandDoubt { size, each }) = self.freedom.hand {
+            for (k, &logarithm) in shared.proportions.logarithms.iter().enumerate() {
+                known.push(Known::new(logarithm, if k == 0 { size } else { each }));
+            }
+        }
+        known.extend(self.known_of(&shared.corrections));
+        (known.iter().map(|known| known.energy).sum(), known)
+    }
+
+    fn known_of(&self, corrections: &[Correction]) -> impl Iterator<Item = Known> {
+        let deviations = self.freedom.cameras.map_or([1.0; 2], |doubt| [doubt.turn, doubt.shift]);
+        let of = move |correction: &Correction| {
+            let parts = [correction.turn, correction.shift].map(|part| part.to_array());
+            let known = move |k: usize| Known::new(parts[k / 3][k % 3], deviations[k / 3]);
+            (0..Correction::NUMBERS).map(known)
+        };
+        corrections.iter().flat_map(of).collect::<Vec<_>>().into_iter()
+    }
+
+    /// The energy of one frame and its normal equations.
+    pub(crate) fn look(
+        &self,
+        frame: usize,
+        moment: &Moment,
+        shared: &Shared,
+        measure: Measure,
+        views: &mut [View],
+    ) -> Result<FrameSystem> {
+        let Frame { evidence, prior } = &self.frames[frame];
+        let hand = match self.freedom.hand {
+            Some(_) => shared.proportions.hand(self.given),
+            None => self.given.clone(),
+        };
+        let posed = hand.pose(&moment.pose, self.rest);
+        let motions = hand.motions(&moment.pose, self.rest);
+        let slopes = self
+            .freedom
+            .hand
+            .map(|_| shared.proportions.slopes(self.given, &moment.pose, self.rest, &posed));
+        let known = moment.margins.iter().map(|&margin| Known::new(margin, measure.margin));
+        let known: Vec<Known> = known.chain(self.known_of(&moment.corrections)).collect();
+        let numbers = prior.dofs().len();
+        let of_hand = self.freedom.hand.map_or(0, |_| shared.proportions.logarithms.len());
+        let of_cameras = Correction::NUMBERS * shared.corrections.len();
+        let mut system = FrameSystem::new(numbers + known.len(), of_hand + of_cameras);
+        system.add_prior(prior, &moment.pose);
+        system.add_known(numbers, &known);
+        let mut rows = Rows { dofs: slots(prior.dofs()), own: Row::new(), shared: Row::new() };
+        for (v, (view, evidence)) in views.iter_mut().zip(*evidence).enumerate() {
+            let correction = moment.corrections.get(v).or(shared.corrections.get(v));
+            let place = Place::new(evidence, correction, self.rest.translation);
+            view.compare(&place.seen(&posed.primitives), evidence, measure.every)?;
+            for found in &view.matches {
+                let residual = place.scale * found.passing.distance - moment.margins[v];
+                let contact = place.contact(found, &posed);
+                rows.clear();
+                rows.of_pose(&contact, &motions);
+                rows.own.push((numbers + v, -1.0));
+                if !moment.corrections.is_empty() {
+                    let first = numbers + moment.margins.len() + Correction::NUMBERS * v;
+                    rows.own.extend(place.row(&contact, first));
+                }
+                if let Some(slopes) = &slopes {
+                    rows.of_proportions(&contact, &slopes[found.solid], place.scale);
+                }
+                if !shared.corrections.is_empty() {
+                    rows.shared.extend(place.row(&contact, of_hand + Correction::NUMBERS * v));
+                }
+                let energy = measure.energy(residual);
+                system.add(residual, energy, measure.weight(residual), &rows.own, &rows.shared);
+            }
+        }
+        Ok(system)
+    }
+}
+
+/// What is known of a number: that it is 0 to a standard deviation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Known {
+    pub(crate) energy: f64,
+    pub(crate) gradient: f64,
+    pub(crate) hessian: f64,
+}
+
+impl Known {
+    fn new(value: f64, deviation: f64) -> Self {
+        let hessian = deviation.powi(-2);
+        Self { energy: 0.5 * value * value * hessian, gradient: value * hessian, hessian }
+    }
+}
+
+/// Where a camera stands.
+struct Place<'a> {
+    evidence: &'a Evidence,
+    /// The motion that its correction gives the hand.
+    motion: Option<DAffine3>,
+    /// What the motion turns about.
+    pivot: DVec3,
+    /// Pixels that a millimetre is wide there.
+    scale: f64,
+    /// From the camera's directions to the world's, as they are before the motion.
+    back: DMat3,
+}
+
+impl<'a> Place<'a> {
+    fn new(evidence: &'a Evidence, correction: Option<&Correction>, pivot: DVec3) -> Self {
+        let camera = evidence.camera();
+        let focal = (camera.intrinsics.fx * camera.intrinsics.fy).sqrt();
+        let motion = correction.map(|correction| correction.motion(pivot));
+        let turned = motion.map_or(DMat3::IDENTITY, |motion| motion.matrix3.transpose());
+        Self {
+            evidence,
+            motion,
+            pivot,
+            scale: focal / camera.extrinsics.to_camera(pivot).length(),
+            back: turned * camera.extrinsics.rotation.transpose(),
+        }
+    }
+
+    /// The solids as they seem to stand.
+    fn seen<'s>(&self, solids: &'s [Primitive]) -> Cow<'s, [Primitive]> {
+        match self.motion {
+            Some(motion) => solids.iter().map(|solid| solid.moved(&motion)).collect(),
+            None => Cow::Borrowed(solids),
+        }
+    }
+
+    fn contact<'p>(&self, found: &Match, posed: &'p PosedHand) -> Contact<'p> {
+        let passing = &found.passing;
+        let balls = posed.primitives[found.solid].balls();
+        let points = match passing.point {
+            Some(point) => {
+                let world = self.evidence.camera().extrinsics.to_world(point);
+                let motion = self.motion.unwrap_or(DAffine3::IDENTITY);
+                let nothing = (0.0, DVec3::ZERO);
+                [(1.0, motion.inverse().transform_point3(world)), nothing, nothing]
+            }
+            None => [0, 1, 2].map(|k| (passing.weights[k], balls[k.min(balls.len() - 1)].center)),
+        };
+        Contact {
+            links: &posed.links[found.solid],
+            weights: passing.weights,
+            points,
+            normal: self.back * passing.normal * self.scale,
+        }
+    }
+
+    /// The slopes of a correction, whose numbers begin at `first`.
+    fn row(&self, contact: &Contact<'_>, first: usize) -> impl Iterator<Item = (usize, f64)> {
+        let motion = self.motion.unwrap_or(DAffine3::IDENTITY);
+        let middle: DVec3 = contact.points.iter().map(|(weight, point)| *point * *weight).sum();
+        let arm = motion.transform_point3(middle) - self.pivot;
+        let normal = motion.transform_vector3(contact.normal);
+        let slopes = [arm.cross(normal).to_array(), normal.to_array()];
+        (0..Correction::NUMBERS).map(move |k| (first + k, slopes[k / 3][k % 3]))
+    }
+}
+
+/// Where each number of a pose is among those that are fitted.
+fn slots(dofs: &[Dof]) -> [Option<usize>; Dof::COUNT] {
+    let mut slots = [None; Dof::COUNT];
+    for (slot, dof) in dofs.iter().enumerate() {
+        slots[dof.index()] = Some(slot);
+    }
+    slots
+}
+
+/// Memory for the rows of one residual.
+struct Rows {
+    dofs: [Option<usize>; Dof::COUNT],
+    own: Row,
+    shared: Row,
+}
+
+impl Rows {
+    fn clear(&mut self) {
+        self.own.clear();
+        self.shared.clear();
+    }
+
+    fn of_pose(&mut self, contact: &Contact<'_>, motions: &Motions) {
+        let Contact { links, points, normal, .. } = contact;
+        let mut k = 0;
+        while k < 3 {
+            // Balls of one link move as one.
+            let (mut weight, mut moment) = (0.0, DVec3::ZERO);
+            let link = links[k];
+            while k < 3 && links[k] == link {
+                weight += points[k].0;
+                moment += points[k].1 * points[k].0;
+                k += 1;
+            }
+            if weight == 0.0 {
+                continue;
+            }
+            for dof in link.dofs() {
+                if let Some(slot) = self.dofs[dof.index()] {
+                    let slope = weight * normal.dot(motions.of(dof).velocity(moment / weight));
+                    match self.own.iter_mut().find(|(other, _)| *other == slot) {
+                        Some((_, sum)) => *sum += slope,
+                        None => self.own.push((slot, slope)),
+                    }
+                }
+            }
+        }
+        self.own.sort_unstable_by_key(|&(slot, _)| slot);
+    }
+
+    fn of_proportions(&mut self, contact: &Contact<'_>, slopes: &[Vec<Slope>; 3], scale: f64) {
+        for (weight, slopes) in contact.weights.iter().zip(slopes) {
+            for slope in slopes.iter().filter(|_| *weight > 0.0) {
+                let moved = contact.normal.dot(slope.center) - scale * slope.radius;
+                match self.shared.iter_mut().find(|(other, _)| *other == slope.number) {
+                    Some((_, sum)) => *sum += weight * moved,
+                    None => self.shared.push((slope.number, weight * moved)),
+                }
+            }
+        }
+        self.shared.sort_unstable_by_key(|&(number, _)| number);
+    }
+}

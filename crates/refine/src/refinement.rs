@@ -1,0 +1,244 @@
+//! One frame: a pose fitted to what cameras saw.
+
+use glam::DAffine3;
+use phalanx_hand::{HandShape, Pose};
+
+use crate::doubt::{CameraDoubt, HandDoubt, Moves};
+use crate::fit::{Outcome, State, Stop, descend, overlaps};
+use crate::problem::{Frame, Freedom, Measure, Problem};
+use crate::search::try_postures;
+use crate::system::covariance;
+use crate::view::View;
+use crate::{Error, Evidence, PosePrior, Result};
+
+/// How poses are refined.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refinement {
+    /// From coarse to fine; at the last every place along the border is looked at.
+    pub levels: Vec<Level>,
+    /// Standard deviation of a border's place, px.
+    pub noise: f64,
+    /// Standard deviation of what segmentation adds to or takes from a whole border, px.
+    pub margin: f64,
+    /// What may be otherwise than given; `None` where hand and cameras are certain.
+    pub doubt: Option<Doubt>,
+}
+
+/// When a hand and cameras are not believed to be as given, and how far off they may be.
+///
+/// Where the pose alone explains a border no better than to `beyond`, the proportions of the hand
+/// and the places of the cameras are fitted with it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Doubt {
+    /// Root of the mean (robust) squared distance of the borders, px.
+    pub beyond: f64,
+    /// The hand.
+    pub hand: Option<HandDoubt>,
+    /// The cameras.
+    pub cameras: Option<CameraDoubt>,
+}
+
+/// Share of the energy that a step must win to be followed by another.
+const GAIN: f64 = 1e-3;
+
+/// A level of detail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Level {
+    /// How far borders may be apart and still count, px.
+    pub reach: f64,
+    /// Of so many places along the border one is looked at.
+    pub every: usize,
+    /// Steps at most.
+    pub steps: usize,
+}
+
+/// A refined pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refined {
+    /// The pose.
+    pub pose: Pose,
+    /// The posterior covariance of the prior's numbers ([`PosePrior::dofs`]), column after column,
+    /// from the curvature of the energy.
+    pub covariance: Vec<f64>,
+    /// Intersection over union of the drawn and the observed silhouette, for each view.
+    pub overlaps: Vec<f64>,
+    /// Root of the mean (robust) squared distance of the borders, px.
+    pub border_px: f64,
+    /// Whether hand and cameras had to be doubted.
+    pub doubted: bool,
+    /// The energy: half the robust squared distances of the borders over their noise, and what the
+    /// prior and the joints' ranges say.
+    pub energy: f64,
+    /// Whether the last steps won nothing worth having.
+    pub converged: bool,
+    /// How many steps were tried.
+    pub steps: usize,
+}
+
+impl Default for Refinement {
+    fn default() -> Self {
+        let level = |reach, every, steps| Level { reach, every, steps };
+        Self {
+            levels: vec![level(12.0, 4, 6), level(3.0, 2, 6), level(1.0, 1, 6)],
+            noise: 0.5,
+            margin: 1.0,
+            doubt: None,
+        }
+    }
+}
+
+impl Default for Doubt {
+    /// People's hands differ from the mean hand by some per cent, careful calibrations from the
+    /// truth by a degree or two.
+    fn default() -> Self {
+        let turn = 1.2_f64.to_radians();
+        Self {
+            beyond: 0.4,
+            hand: Some(HandDoubt { size: 0.02, each: 0.06 }),
+            cameras: Some(CameraDoubt { turn, shift: 0.5, moves: Moves::EveryFrame }),
+        }
+    }
+}
+
+impl Refinement {
+    /// Fits the pose of a hand, whose frame at rest is mapped to the world by `rest`, to what
+    /// cameras saw, from `start`. Those numbers that the prior does not leave open keep their
+    /// values.
+    ///
+    /// The energy after it is never above that of the start, at the last level.
+    ///
+    /// # Errors
+    /// No evidence, a parameter out of its range, a hand that no one has or that a camera cannot
+    /// draw.
+    pub fn run(
+        &self,
+        hand: &HandShape,
+        rest: &DAffine3,
+        evidence: &[Evidence],
+        start: &Pose,
+        prior: &PosePrior,
+    ) -> Result<Refined> {
+        self.check()?;
+        hand.validate()?;
+        if evidence.is_empty() {
+            return Err(Error::NoEvidence);
+        }
+        let mut views = vec![evidence.iter().map(View::new).collect::<Result<Vec<_>>>()?];
+        let mut problem = Problem {
+            given: hand,
+            rest,
+            frames: vec![Frame { evidence, prior }],
+            freedom: Freedom::default(),
+        };
+        let mut best = self.descend(&problem, start, &mut views)?;
+        let mut doubted = false;
+        if let Some(doubt) = self.doubt.filter(|doubt| best.border_px(self.noise) > doubt.beyond) {
+            problem.freedom = Freedom { hand: doubt.hand, cameras: doubt.cameras };
+            let state = State {
+                moments: vec![problem.moment(0, &best.state.moments[0].pose)],
+                shared: problem.shared(),
+            };
+            let steps = best.steps;
+            best = self.from_level(1, &problem, state, &mut views)?;
+            best.steps += steps;
+            doubted = true;
+        }
+        let overlaps = overlaps(&problem, &best.state, self.finest(), &mut views)?.swap_remove(0);
+        Ok(Refined {
+            pose: best.state.moments[0].pose,
+            covariance: covariance(&best.frames[0], prior.dofs().len()).unwrap_or_default(),
+            overlaps,
+            border_px: best.border_px(self.noise),
+            energy: best.energy,
+            doubted,
+            converged: best.converged,
+            steps: best.steps,
+        })
+    }
+
+    /// From coarse to fine with hand and cameras as given.
+    fn descend(
+        &self,
+        problem: &Problem<'_>,
+        start: &Pose,
+        views: &mut [Vec<View>],
+    ) -> Result<Outcome> {
+        let Frame { evidence, prior } = problem.frames[0];
+        let start = State { moments: vec![problem.moment(0, start)], shared: problem.shared() };
+        let coarsest = &self.levels[0];
+        let stop = Stop { steps: coarsest.steps, gain: GAIN };
+        let coarse = descend(problem, start.clone(), self.measure(coarsest), stop, views)?;
+        let mut state = coarse.state;
+        let pose = &mut state.moments[0].pose;
+        *pose = try_postures(problem.given, problem.rest, evidence, prior, pose, &mut views[0])?;
+        let mut after = self.from_level(1, problem, state, views)?;
+        after.steps += coarse.steps;
+        // What was coarse may have led away from a good start.
+        let finest = self.finest();
+        let stay = Stop { steps: 0, gain: GAIN };
+        let before = descend(problem, start, finest, stay, views)?;
+        if after.energy <= before.energy {
+            return Ok(after);
+        }
+        let stop = Stop { steps: self.levels.last().expect("checked").steps, gain: GAIN };
+        descend(problem, before.state, finest, stop, views)
+    }
+
+    /// The levels from one on.
+    pub(crate) fn from_level(
+        &self,
+        first: usize,
+        problem: &Problem<'_>,
+        start: State,
+        views: &mut [Vec<View>],
+    ) -> Result<Outcome> {
+        let last = self.levels.len() - 1;
+        let mut steps = 0;
+        let mut state = start;
+        for level in &self.levels[first.min(last)..last] {
+            let stop = Stop { steps: level.steps, gain: GAIN };
+            let outcome = descend(problem, state, self.measure(level), stop, views)?;
+            steps += outcome.steps;
+            state = outcome.state;
+        }
+        let level = &self.levels[last];
+        let stop = Stop { steps: level.steps, gain: GAIN };
+        let mut outcome = descend(problem, state, self.measure(level), stop, views)?;
+        outcome.steps += steps;
+        Ok(outcome)
+    }
+
+    /// The measure of the last level.
+    pub(crate) fn finest(&self) -> Measure {
+        self.measure(self.levels.last().expect("checked"))
+    }
+
+    fn measure(&self, level: &Level) -> Measure {
+        Measure { reach: level.reach, noise: self.noise, margin: self.margin, every: level.every }
+    }
+
+    pub(crate) fn check(&self) -> Result<()> {
+        let wrong = |name, value, allowed| Err(Error::Parameter { name, value, allowed });
+        if !(self.noise > 0.0 && self.noise.is_finite()) {
+            return wrong("noise", self.noise, "positive");
+        }
+        if !(self.margin > 0.0 && self.margin.is_finite()) {
+            return wrong("margin", self.margin, "positive");
+        }
+        for level in &self.levels {
+            if !(level.reach > 0.0 && level.reach.is_finite()) {
+                return wrong("reach", level.reach, "positive");
+            }
+            if level.every == 0 {
+                return wrong("every", 0.0, "at least 1");
+            }
+        }
+        match self.levels.last() {
+            None => wrong("number of levels", 0.0, "at least 1"),
+            Some(level) if level.every != 1 => {
+                wrong("every of the last level", level.every as f64, "1")
+            }
+            Some(_) => Ok(()),
+        }
+    }
+}

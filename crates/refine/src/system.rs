@@ -1,0 +1,175 @@
+//! The normal equations of a fit: one block for each frame's pose, one for what all frames share.
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, MatRef, Side};
+use phalanx_hand::Pose;
+
+use crate::PosePrior;
+use crate::problem::Known;
+
+/// A sparse row of the Jacobian: which unknown, and the slope.
+pub(crate) type Row = Vec<(usize, f64)>;
+
+/// The normal equations of one frame: Hessians column after column, lower triangles of the square
+/// ones.
+#[derive(Debug, Clone)]
+pub(crate) struct FrameSystem {
+    own: usize,
+    shared: usize,
+    /// The frame's share of the energy.
+    pub(crate) energy: f64,
+    /// That of the border.
+    pub(crate) border: Border,
+    own_hessian: Vec<f64>,
+    /// `own` × `shared`.
+    mixed_hessian: Vec<f64>,
+    shared_hessian: Vec<f64>,
+    own_gradient: Vec<f64>,
+    shared_gradient: Vec<f64>,
+}
+
+/// What the border's residuals add up to.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Border {
+    pub(crate) energy: f64,
+    pub(crate) count: usize,
+}
+
+impl FrameSystem {
+    /// Of so many unknowns of the frame and shared ones.
+    pub(crate) fn new(own: usize, shared: usize) -> Self {
+        Self {
+            own,
+            shared,
+            energy: 0.0,
+            border: Border::default(),
+            own_hessian: vec![0.0; own * own],
+            mixed_hessian: vec![0.0; own * shared],
+            shared_hessian: vec![0.0; shared * shared],
+            own_gradient: vec![0.0; own],
+            shared_gradient: vec![0.0; shared],
+        }
+    }
+
+    /// Adds what is known of the pose, whose numbers come first.
+    pub(crate) fn add_prior(&mut self, prior: &PosePrior, pose: &Pose) {
+        self.energy += prior.add(pose, &mut self.own_gradient, &mut self.own_hessian, self.own);
+    }
+
+    /// Adds what is known of the frame's unknowns from `first` on.
+    pub(crate) fn add_known(&mut self, first: usize, known: &[Known]) {
+        for (k, known) in (first..).zip(known) {
+            self.energy += known.energy;
+            self.own_gradient[k] += known.gradient;
+            self.own_hessian[k * self.own + k] += known.hessian;
+        }
+    }
+
+    /// Adds a residual of the border. Both rows are in ascending order.
+    pub(crate) fn add(
+        &mut self,
+        residual: f64,
+        energy: f64,
+        weight: f64,
+        own: &Row,
+        shared: &Row,
+    ) {
+        self.energy += energy;
+        self.border.energy += energy;
+        self.border.count += 1;
+        let hessian = &mut self.own_hessian;
+        add_outer(hessian, &mut self.own_gradient, self.own, own, residual, weight);
+        let hessian = &mut self.shared_hessian;
+        add_outer(hessian, &mut self.shared_gradient, self.shared, shared, residual, weight);
+        for &(j, slope) in shared {
+            let column = &mut self.mixed_hessian[j * self.own..(j + 1) * self.own];
+            for &(i, other) in own {
+                column[i] += weight * slope * other;
+            }
+        }
+    }
+}
+
+fn add_outer(
+    hessian: &mut [f64],
+    gradient: &mut [f64],
+    count: usize,
+    row: &Row,
+    residual: f64,
+    weight: f64,
+) {
+    for (k, &(j, slope)) in row.iter().enumerate() {
+        let scaled = weight * slope;
+        gradient[j] += scaled * residual;
+        for &(i, other) in &row[k..] {
+            hessian[j * count + i] += scaled * other;
+        }
+    }
+}
+
+/// A step of all unknowns.
+#[derive(Debug, Clone)]
+pub(crate) struct Step {
+    pub(crate) own: Vec<Vec<f64>>,
+    pub(crate) shared: Vec<f64>,
+}
+
+/// The damped step −(H + damping · diag H)⁻¹ g of all frames, each frame's pose being eliminated in
+/// turn. `shared_prior` holds the diagonal Hessian and the gradient of what is known of the shared
+/// numbers.
+///
+/// `None` where the Hessian is not positive definite to working precision.
+pub(crate) fn solve(
+    frames: &[FrameSystem],
+    shared_prior: &[Known],
+    damping: f64,
+) -> Option<Step> {
+    let shared = shared_prior.len();
+    let mut reduced = Mat::<f64>::zeros(shared, shared);
+    let mut slope = Mat::<f64>::zeros(shared, 1);
+    for (k, known) in shared_prior.iter().enumerate() {
+        reduced[(k, k)] += known.hessian;
+        slope[(k, 0)] += known.gradient;
+    }
+    let mut eliminated = Vec::with_capacity(frames.len());
+    for frame in frames {
+        let n = frame.own;
+        let mut square = Mat::from_fn(n, n, |i, j| frame.own_hessian[i.min(j) * n + i.max(j)]);
+        (0..n).for_each(|k| square[(k, k)] *= 1.0 + damping);
+        let mixed = MatRef::from_column_major_slice(&frame.mixed_hessian, n, shared);
+        let factor = square.llt(Side::Lower).ok()?;
+        let gradient = MatRef::from_column_major_slice(&frame.own_gradient, n, 1);
+        let (across, along) = (factor.solve(mixed), factor.solve(gradient));
+        for j in 0..shared {
+            for i in j..shared {
+                reduced[(i, j)] += frame.shared_hessian[j * shared + i];
+            }
+            slope[(j, 0)] += frame.shared_gradient[j];
+        }
+        if shared > 0 {
+            reduced -= mixed.transpose() * &across;
+            slope -= mixed.transpose() * &along;
+        }
+        eliminated.push((across, along));
+    }
+    (0..shared).for_each(|k| reduced[(k, k)] += damping * reduced[(k, k)].abs());
+    let common = if shared > 0 { reduced.llt(Side::Lower).ok()?.solve(&slope) } else { slope };
+    let own_step = |(across, along): (Mat<f64>, Mat<f64>)| {
+        let step = if shared > 0 { across * &common - along } else { -along };
+        step.col(0).iter().copied().collect()
+    };
+    Some(Step {
+        own: eliminated.into_iter().map(own_step).collect(),
+        shared: common.col(0).iter().map(|value| -value).collect(),
+    })
+}
+
+/// The covariance of the first `numbers` unknowns of a frame, with everything shared being known,
+/// column after column: of the inverse of its Hessian.
+pub(crate) fn covariance(frame: &FrameSystem, numbers: usize) -> Option<Vec<f64>> {
+    let n = frame.own;
+    let own = Mat::from_fn(n, n, |i, j| frame.own_hessian[i.min(j) * n + i.max(j)]);
+    let factor = own.llt(Side::Lower).ok()?;
+    let inverse = faer::linalg::solvers::DenseSolveCore::inverse(&factor);
+    Some((0..numbers * numbers).map(|k| inverse[(k % numbers, k / numbers)]).collect())
+}

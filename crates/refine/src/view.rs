@@ -1,0 +1,146 @@
+//! A posed hand as one camera sees it.
+
+use glam::{DAffine3, DVec2, DVec3};
+use image::GrayImage;
+use phalanx_hand::Primitive;
+use phalanx_render::Renderer;
+
+use crate::evidence::find_cracks;
+use crate::hull::{Bound, Hull, Passing};
+use crate::{Error, Evidence, Result};
+
+/// A ray of the observed border and the solid that should touch it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Match {
+    /// Which solid.
+    pub(crate) solid: usize,
+    /// Where the ray passes it.
+    pub(crate) passing: Passing,
+}
+
+/// A drawn border that is as close as this, px, to an observed one says nothing that the observed one
+/// does not say.
+const CLOSE: f64 = 1.2;
+
+/// A hull, and where its outline may be.
+#[derive(Debug, Clone)]
+struct Seen {
+    hull: Hull,
+    bound: Bound,
+}
+
+/// The memory in which one camera's view of one pose after another is compared with what it saw.
+#[derive(Debug, Clone)]
+pub(crate) struct View {
+    renderer: Renderer,
+    seen: Vec<Seen>,
+    drawn: GrayImage,
+    cracks: Vec<DVec2>,
+    pub(crate) matches: Vec<Match>,
+}
+
+impl View {
+    pub(crate) fn new(evidence: &Evidence) -> Result<Self> {
+        let camera = evidence.camera();
+        let renderer = Renderer::new(camera).map_err(|reason| render_error(evidence, reason))?;
+        Ok(Self {
+            renderer,
+            seen: Vec::new(),
+            drawn: GrayImage::default(),
+            cracks: Vec::new(),
+            matches: Vec::new(),
+        })
+    }
+
+    /// Matches solids, in the world, with the border that was seen, both ways: each observed crack
+    /// with the solid that it is least outside of, and each crack of the drawn silhouette's solid
+    /// with the observed crack that is nearest to it.
+    pub(crate) fn compare(&mut self, solids: &[Primitive], evidence: &Evidence, every: usize) -> Result<()> {
+        let camera = evidence.camera();
+        self.renderer
+            .silhouette_into(solids, &mut self.drawn)
+            .map_err(|reason| render_error(evidence, reason))?;
+        find_cracks(&self.drawn, &mut self.cracks);
+        let to_camera = DAffine3::from_mat3_translation(
+            camera.extrinsics.rotation,
+            camera.extrinsics.translation,
+        );
+        self.seen.clear();
+        self.seen.extend(solids.iter().map(|solid| Seen::new(&solid.moved(&to_camera))));
+        self.matches.clear();
+        let mut last = 0;
+        for (&ray, &normal) in evidence.rays().iter().zip(evidence.normals()).step_by(every) {
+            let found = closest(&self.seen, ray, Some(normal), last);
+            last = found.solid;
+            self.matches.push(found);
+        }
+        for &crack in self.cracks.iter().step_by(every) {
+            let nearest = evidence.nearest(crack);
+            if evidence.cracks()[nearest].distance_squared(crack) < CLOSE * CLOSE {
+                continue;
+            }
+            let Some(direction) = camera.intrinsics.to_normalised(crack) else { continue };
+            let own = closest(&self.seen, direction.extend(1.0).normalize(), None, last);
+            last = own.solid;
+            if own.passing.normal.truncate().dot(evidence.normals()[nearest]) > 0.0 {
+                continue;
+            }
+            let passing = self.seen[last].hull.pass(evidence.rays()[nearest]);
+            self.matches.push(Match { solid: last, passing });
+        }
+        Ok(())
+    }
+
+    /// Draws solids, in the world, into an image.
+    pub(crate) fn draw(
+        &mut self,
+        solids: &[Primitive],
+        evidence: &Evidence,
+        image: &mut GrayImage,
+    ) -> Result<()> {
+        self.renderer
+            .silhouette_into(solids, image)
+            .map_err(|reason| render_error(evidence, reason))
+    }
+
+    /// The silhouette that was drawn last.
+    pub(crate) fn drawn(&self) -> &GrayImage {
+        &self.drawn
+    }
+}
+
+impl Seen {
+    fn new(solid_in_camera: &Primitive) -> Self {
+        let hull = Hull::new(solid_in_camera);
+        Self { hull, bound: hull.bound() }
+    }
+}
+
+/// The solid that a ray is least outside of; `hint` is looked at first. Where the outline's outward
+/// normal is known, solids whose outline faces another way count as further off.
+fn closest(seen: &[Seen], ray: DVec3, outwards: Option<DVec2>, hint: usize) -> Match {
+    // mm
+    let kappa: f64 = 6.0;
+    let place = ray.truncate() / ray.z;
+    let cost = |passing: &Passing| {
+        let facing = outwards.map_or(0.0, |o| 1.0 + o.dot(passing.normal.truncate()));
+        passing.distance + kappa * facing
+    };
+    let mut best = Match { solid: hint, passing: seen[hint].hull.pass(ray) };
+    let mut best_cost = cost(&best.passing);
+    for (solid, candidate) in seen.iter().enumerate() {
+        if solid != hint && candidate.bound.least(place) < best_cost {
+            let passing = candidate.hull.pass(ray);
+            let c = cost(&passing);
+            if c < best_cost {
+                best = Match { solid, passing };
+                best_cost = c;
+            }
+        }
+    }
+    best
+}
+
+fn render_error(evidence: &Evidence, reason: phalanx_render::Error) -> Error {
+    Error::Render { camera: evidence.camera().name.clone(), reason }
+}
