@@ -5,10 +5,12 @@ use clap::Args;
 use comfy_table::{Table, presets};
 use faer::Mat;
 use phalanx::{
-    Estimator, Preset, Progress, SceneDescriber, Scenes, Shard, Workspace, describe_scenes, targets,
+    Estimate, Estimator, Hypothesis, Preset, Progress, Refiner, SceneDescriber, Scenes, Shard,
+    Workspace, describe_scenes, targets,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
+use phalanx_refine::Refinement;
 use phalanx_rvm::{ConditionalDensity, Standardiser};
 use rayon::prelude::*;
 
@@ -28,10 +30,26 @@ const NEIGHBOURS: usize = 50;
 #[derive(Args)]
 pub(crate) struct Arguments {}
 
+/// Of so many samples of the test one is asked about: refinement takes its time.
+const EVERY: usize = 5;
+
 /// Several poses for each sample, the one to be believed first.
 struct Answers {
     method: &'static str,
     poses: Vec<Vec<Pose>>,
+}
+
+/// What is asked about.
+struct Questions<'a> {
+    test: Set<'a>,
+    /// Samples of the test.
+    numbers: Vec<usize>,
+}
+
+impl Questions<'_> {
+    fn truth(&self) -> Vec<Pose> {
+        self.numbers.iter().map(|&number| self.test.poses[number]).collect()
+    }
 }
 
 /// Writes the page and prints it.
@@ -48,10 +66,13 @@ pub(crate) fn run(_: &Arguments) -> Result<()> {
     ]);
     for rig in [rig.select(&["top"])?, rig] {
         let test = Test::Unseen.set(&rig, &hand, &[]);
-        for answers in answers(&rig, &hand, &test, &bar)? {
+        let numbers = (0..test.count()).step_by(EVERY).collect();
+        let questions = Questions { test, numbers };
+        let truth = questions.truth();
+        for answers in answers(&rig, &hand, &questions, &bar)? {
             let mut row = vec![rig.cameras.len().to_string(), answers.method.to_owned()];
             for most in [1, 3, MOST] {
-                row.push(format!("{:.2}", best_of(most, &answers.poses, &test.poses)));
+                row.push(format!("{:.2}", best_of(most, &answers.poses, &truth)));
             }
             table.add_row(row);
         }
@@ -69,11 +90,11 @@ pub(crate) fn run(_: &Arguments) -> Result<()> {
     files::print(&page)
 }
 
-/// What each method names for every sample of a test.
+/// What each method names for every question.
 fn answers(
     rig: &Rig,
     hand: &HandShape,
-    test: &Set<'_>,
+    questions: &Questions<'_>,
     progress: &dyn Progress,
 ) -> Result<Vec<Answers>> {
     let train = sets::random(rig, hand, PRESET.scenes(), Augment::No);
@@ -81,32 +102,77 @@ fn answers(
     let estimator = part.finish()?;
     let fresh = sets::fresh(rig, hand, ERROR_SCENES, Augment::No);
     let estimator = estimator.learn_errors(&fresh, progress)?;
-    let (nearest, middles) = from_neighbours(&estimator, &train, test, progress)?;
+    let refiner = Refiner::new(rig, hand, &fresh.poses, Refinement::default())?;
+    let (nearest, middles) = from_neighbours(&estimator, &train, questions, progress)?;
+    let found = hypotheses(&estimator, &refiner, questions, progress)?;
+    let all = |which: fn(&Found) -> &Vec<Pose>| found.iter().map(which).cloned().collect();
     Ok(vec![
         Answers { method: "the five nearest training samples", poses: nearest },
         Answers { method: "principal points of the fifty nearest", poses: middles },
-        Answers { method: "hypotheses", poses: hypotheses(&estimator, test, progress)? },
+        Answers { method: "hypotheses", poses: all(|found| &found.poses) },
+        Answers { method: "the estimate, refined", poses: all(|found| &found.estimate) },
+        Answers { method: "A", poses: all(|found| &found.a) },
+        Answers { method: "B", poses: all(|found| &found.refined) },
     ])
 }
 
-/// The estimator's own hypotheses.
+/// The hypotheses about one sample.
+struct Found {
+    /// As named.
+    poses: Vec<Pose>,
+    /// The estimate alone, refined.
+    estimate: Vec<Pose>,
+    a: Vec<Pose>,
+    /// Each refined, the one with the least energy first.
+    refined: Vec<Pose>,
+}
+
+/// The estimator's own hypotheses, and what refining makes of them.
 fn hypotheses(
     estimator: &Estimator,
-    test: &Set<'_>,
+    refiner: &Refiner,
+    questions: &Questions<'_>,
     progress: &dyn Progress,
-) -> Result<Vec<Vec<Pose>>> {
+) -> Result<Vec<Found>> {
     let rig = estimator.rig();
     let describer = SceneDescriber::new(rig, estimator.descriptor().orientation())?;
-    progress.begin("name several poses", test.count());
+    progress.begin("name several poses", questions.numbers.len());
     let memory = || (describer.clone(), Workspace::default());
-    let name = |(describer, workspace): &mut (SceneDescriber, Workspace), number: usize| {
-        let silhouettes: Vec<_> = describer.silhouettes(&test.scene(number))?.cloned().collect();
+    let name = |(describer, workspace): &mut (SceneDescriber, Workspace), &number: &usize| {
+        let scene = questions.test.scene(number);
+        let silhouettes: Vec<_> = describer.silhouettes(&scene)?.cloned().collect();
         let estimate = estimator.estimate_silhouettes(&silhouettes, workspace)?;
+        let hypotheses = estimator.hypotheses(&estimate, MOST)?;
+        let mut refined = Vec::new();
+        let mut a = Vec::new();
+        let evidence = refiner.evidence(&silhouettes)?;
+        let common = refiner.prior(&estimate.pose, &estimate.std)?;
+        for Hypothesis { pose, std, weight } in &hypotheses {
+            let (pose, std) = (*pose, *std);
+            let result =
+                refiner.refine(&silhouettes, &Estimate { pose, std, ..estimate.clone() })?;
+            refined.push((result.energy - weight.max(1e-3).ln(), result.pose));
+            let result = Refinement::default().run(
+                refiner.hand(),
+                refiner.rest(),
+                &evidence,
+                &pose,
+                &common,
+            )?;
+            a.push((result.energy, result.pose));
+        }
+        let first = vec![refiner.refine(&silhouettes, &estimate)?.pose];
+        refined.sort_by(|a, b| a.0.total_cmp(&b.0));
+        a.sort_by(|a, b| a.0.total_cmp(&b.0));
         progress.step();
-        let found = estimator.hypotheses(&estimate, MOST)?;
-        Ok(found.into_iter().map(|hypothesis| hypothesis.pose).collect())
+        Ok(Found {
+            poses: hypotheses.iter().map(|hypothesis| hypothesis.pose).collect(),
+            estimate: first,
+            refined: refined.into_iter().map(|(_, pose)| pose).collect(),
+            a: a.into_iter().map(|(_, pose)| pose).collect(),
+        })
     };
-    (0..test.count()).into_par_iter().map_init(memory, name).collect()
+    questions.numbers.par_iter().map_init(memory, name).collect()
 }
 
 /// The naive rivals: the poses of the training samples whose descriptors are the nearest, and few
@@ -114,18 +180,19 @@ fn hypotheses(
 fn from_neighbours(
     estimator: &Estimator,
     train: &Set<'_>,
-    test: &Set<'_>,
+    questions: &Questions<'_>,
     progress: &dyn Progress,
 ) -> Result<(Vec<Vec<Pose>>, Vec<Vec<Pose>>)> {
-    let described = |set: &Set<'_>| -> Result<Mat<f64>> {
-        progress.begin("describe", set.count());
-        let all: Vec<usize> = (0..set.count()).collect();
+    let described = |set: &Set<'_>, numbers: &[usize]| -> Result<Mat<f64>> {
+        progress.begin("describe", numbers.len());
         let descriptor = estimator.descriptor();
-        let columns = describe_scenes(estimator.rig(), set, &all, descriptor, progress)?;
+        let columns = describe_scenes(estimator.rig(), set, numbers, descriptor, progress)?;
         let columns = columns.into_iter().collect::<phalanx::Result<Vec<_>>>()?;
         Ok(Mat::from_fn(descriptor.dim(), columns.len(), |row, i| columns[i][row]))
     };
-    let (known, asked) = (described(train)?, described(test)?);
+    let all: Vec<usize> = (0..train.count()).collect();
+    let known = described(train, &all)?;
+    let asked = described(&questions.test, &questions.numbers)?;
     let scaling = Standardiser::fit(known.as_ref())?;
     let (known, asked) = (scaling.apply(known.as_ref())?, scaling.apply(asked.as_ref())?);
     let neighbours = |number: usize| -> Vec<Pose> {
@@ -137,7 +204,7 @@ fn from_neighbours(
         order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         order.iter().take(NEIGHBOURS).map(|&(_, i)| train.poses[i]).collect()
     };
-    let fifty: Vec<Vec<Pose>> = (0..test.count()).into_par_iter().map(neighbours).collect();
+    let fifty: Vec<Vec<Pose>> = (0..asked.ncols()).into_par_iter().map(neighbours).collect();
     let nearest = fifty.iter().map(|poses| poses[..MOST].to_vec()).collect();
     let middles = fifty.iter().map(|poses| middles(poses)).collect::<Result<_>>()?;
     Ok((nearest, middles))

@@ -77,8 +77,23 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
         cov[j * n + j] = slope * slope * v + couple * couple;
     }
     let prior0 = PosePrior::correlated(Pose::REST, &dofs, &cov)?;
-    let refinement =
-        Refinement { levels: a.levels.iter().map(|l| { let p: Vec<f64> = l.split('/').map(|x| x.parse().unwrap()).collect(); phalanx_refine::Level { reach: p[0], every: p[1] as usize, steps: p[2] as usize } }).collect(), noise: a.noise, margin: a.margin, doubt: a.beyond.map(|beyond| phalanx_refine::Doubt { beyond, cameras: a.cameras.then(|| phalanx_refine::Doubt::default().cameras.unwrap()), ..Default::default() }) };
+    let refinement = Refinement {
+        levels: a
+            .levels
+            .iter()
+            .map(|l| {
+                let p: Vec<f64> = l.split('/').map(|x| x.parse().unwrap()).collect();
+                phalanx_refine::Level { reach: p[0], every: p[1] as usize, steps: p[2] as usize }
+            })
+            .collect(),
+        noise: a.noise,
+        margin: a.margin,
+        doubt: a.beyond.map(|beyond| phalanx_refine::Doubt {
+            beyond,
+            cameras: a.cameras.then(|| phalanx_refine::Doubt::default().cameras.unwrap()),
+            ..Default::default()
+        }),
+    };
     let describer = SceneDescriber::new(&rig, OrientationRule::default())?;
     let cams = rig.cameras.iter().map(working_camera).collect::<Result<Vec<_>, _>>()?;
     let step = 2000 / a.count;
@@ -87,10 +102,14 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
         Some(path) if path.exists() => Some(phalanx::Estimator::from_bytes(&std::fs::read(path)?)?),
         Some(path) => {
             let t = std::time::Instant::now();
-            let preset = if a.samples <= 4000 { phalanx::Preset::Fast } else { phalanx::Preset::Balanced };
+            let preset =
+                if a.samples <= 4000 { phalanx::Preset::Fast } else { phalanx::Preset::Balanced };
             let scenes = crate::sets::random(&rig, &hand, a.samples, crate::sets::Augment::Yes);
             let bar = crate::progress::Bar::new();
-            let e = preset.training().shard(&rig, &hand, &scenes, phalanx::Shard::WHOLE, &bar)?.finish()?;
+            let e = preset
+                .training()
+                .shard(&rig, &hand, &scenes, phalanx::Shard::WHOLE, &bar)?
+                .finish()?;
             std::fs::write(path, e.to_bytes()?)?;
             println!("trained in {:.0} s", t.elapsed().as_secs_f64());
             Some(e)
@@ -103,7 +122,9 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
         let mut d = describer.clone();
         let sil: Vec<_> = d.silhouettes(&set.scene(0))?.cloned().collect();
         let t = std::time::Instant::now();
-        for _ in 0..20 { e.estimate_silhouettes(&sil, &mut ws)?; }
+        for _ in 0..20 {
+            e.estimate_silhouettes(&sil, &mut ws)?;
+        }
         println!("regression {:.2} ms", t.elapsed().as_secs_f64() * 50.0);
     }
     let out: Vec<_> = (0..a.count)
@@ -121,8 +142,8 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
                         start[d[k]] += dev[d[k].index()] * gauss(&mut r);
                     }
                     let slope = if digit == Digit::Thumb { 4.0 / 3.0 } else { 2.0 / 3.0 };
-                    start[d[3]] += slope * (start[d[2]] - scene.pose[d[2]])
-                        + couple * gauss(&mut r);
+                    start[d[3]] +=
+                        slope * (start[d[2]] - scene.pose[d[2]]) + couple * gauss(&mut r);
                 }
                 start[Dof::ThetaZ] += dev[Dof::ThetaZ.index()] * gauss(&mut r);
                 for dof in Dof::ALL {
@@ -131,7 +152,8 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
                 }
                 let mut std = None;
                 if let Some(e) = &estimator {
-                    let estimate = e.estimate_silhouettes(&sil, &mut phalanx::Workspace::default())?;
+                    let estimate =
+                        e.estimate_silhouettes(&sil, &mut phalanx::Workspace::default())?;
                     start = estimate.pose;
                     std = Some(estimate.std);
                 }
@@ -142,7 +164,10 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
                     .map(|(c, s)| Evidence::new(c, &s.mask))
                     .collect::<Result<Vec<_>, _>>()?;
                 let t1 = t.elapsed().as_secs_f64() * 1e3;
-                let prior = match std { Some(std) => refiner.prior(&start, &std)?, None => prior0.about(start)? };
+                let prior = match std {
+                    Some(std) => refiner.prior(&start, &std)?,
+                    None => prior0.about(start)?,
+                };
                 let fit_start = if std.is_some() { *prior.mean() } else { start };
                 let h = if a.own { &scene.hand } else { &hand };
                 let refined = refinement.run(h, &rest, &ev, &fit_start, &prior)?;
@@ -159,34 +184,91 @@ pub(crate) fn run(a: &Arguments) -> Result<()> {
     let all = |f: &dyn Fn(usize) -> Pose| {
         dofs.iter().map(|&d| err(f, d)).sum::<f64>() / dofs.len() as f64
     };
-    println!("start {:.2}  refined {:.2}  from truth {:.2}", all(&|i| out[i].1), all(&|i| out[i].2.pose), all(&|i| out[i].5.pose));
+    println!(
+        "start {:.2}  refined {:.2}  from truth {:.2}",
+        all(&|i| out[i].1),
+        all(&|i| out[i].2.pose),
+        all(&|i| out[i].5.pose)
+    );
     for d in &dofs {
         print!("{} {:.1}>{:.1}  ", d.name(), err(&|i| out[i].1, *d), err(&|i| out[i].2.pose, *d));
     }
     println!();
-    let mut per: Vec<f64> = (0..out.len()).map(|i| dofs.iter().map(|&d| (out[i].2.pose[d] - out[i].0[d]).abs().to_degrees()).sum::<f64>() / n as f64).collect();
+    let mut per: Vec<f64> = (0..out.len())
+        .map(|i| {
+            dofs.iter().map(|&d| (out[i].2.pose[d] - out[i].0[d]).abs().to_degrees()).sum::<f64>()
+                / n as f64
+        })
+        .collect();
     per.sort_by(f64::total_cmp);
-    println!("median {:.2} p90 {:.2} max {:.2}", per[per.len() / 2], per[per.len() * 9 / 10], per[per.len() - 1]);
+    println!(
+        "median {:.2} p90 {:.2} max {:.2}",
+        per[per.len() / 2],
+        per[per.len() * 9 / 10],
+        per[per.len() - 1]
+    );
     let mut ms: Vec<f64> = out.iter().map(|o| o.3 / 2.0).collect();
     ms.sort_by(f64::total_cmp);
-    let ov: f64 = out.iter().map(|o| o.2.overlaps.iter().sum::<f64>() / o.2.overlaps.len() as f64).sum::<f64>() / out.len() as f64;
+    let ov: f64 = out
+        .iter()
+        .map(|o| o.2.overlaps.iter().sum::<f64>() / o.2.overlaps.len() as f64)
+        .sum::<f64>()
+        / out.len() as f64;
     let st: f64 = out.iter().map(|o| o.2.steps as f64).sum::<f64>() / out.len() as f64;
-    let mut px: Vec<f64> = out.iter().map(|o| o.2.border_px).collect(); px.sort_by(f64::total_cmp); println!("border px quantiles {:.2} {:.2} {:.2} doubted {}", px[px.len()/20], px[px.len()/2], px[px.len()*19/20], out.iter().filter(|o| o.2.doubted).count());
-    println!("ms median {:.1} p95 {:.1}; evidence {:.2}; overlap {:.3}; steps {:.1}", ms[ms.len() / 2], ms[ms.len() * 95 / 100], out[0].4, ov, st);
+    let mut px: Vec<f64> = out.iter().map(|o| o.2.border_px).collect();
+    px.sort_by(f64::total_cmp);
+    println!(
+        "border px quantiles {:.2} {:.2} {:.2} doubted {}",
+        px[px.len() / 20],
+        px[px.len() / 2],
+        px[px.len() * 19 / 20],
+        out.iter().filter(|o| o.2.doubted).count()
+    );
+    println!(
+        "ms median {:.1} p95 {:.1}; evidence {:.2}; overlap {:.3}; steps {:.1}",
+        ms[ms.len() / 2],
+        ms[ms.len() * 95 / 100],
+        out[0].4,
+        ov,
+        st
+    );
     let mut order: Vec<usize> = (0..out.len()).collect();
     let e = |i: usize| dofs.iter().map(|&d| (out[i].2.pose[d] - out[i].0[d]).abs()).sum::<f64>();
     order.sort_by(|&i, &j| e(j).total_cmp(&e(i)));
     for &i in order.iter().take(5) {
-        println!("-- {:.1}: energy {:.0} truth {:.0} overlaps {:.3?}", e(i).to_degrees() / n as f64, out[i].2.energy, out[i].5.energy, out[i].2.overlaps);
+        println!(
+            "-- {:.1}: energy {:.0} truth {:.0} overlaps {:.3?}",
+            e(i).to_degrees() / n as f64,
+            out[i].2.energy,
+            out[i].5.energy,
+            out[i].2.overlaps
+        );
         for d in &dofs {
             let x = (out[i].2.pose[*d] - out[i].0[*d]).to_degrees();
-            if x.abs() > 10.0 { print!("{} {:.0}: {:+.0} (start {:+.0})  ", d.name(), out[i].0[*d].to_degrees(), x, (out[i].1[*d] - out[i].0[*d]).to_degrees()); }
+            if x.abs() > 10.0 {
+                print!(
+                    "{} {:.0}: {:+.0} (start {:+.0})  ",
+                    d.name(),
+                    out[i].0[*d].to_degrees(),
+                    x,
+                    (out[i].1[*d] - out[i].0[*d]).to_degrees()
+                );
+            }
         }
         println!();
     }
-    dump(&rig, &hand, &order.iter().take(5).map(|&i| (out[i].0, out[i].1, out[i].2.pose)).collect::<Vec<_>>())?;
+    dump(
+        &rig,
+        &hand,
+        &order.iter().take(5).map(|&i| (out[i].0, out[i].1, out[i].2.pose)).collect::<Vec<_>>(),
+    )?;
     let better = out.iter().filter(|o| o.5.energy < o.2.energy * 0.98).count();
-    println!("truth start better energy in {better} of {}; energies {:.1} {:.1}", out.len(), out.iter().map(|o| o.2.energy).sum::<f64>() / out.len() as f64, out.iter().map(|o| o.5.energy).sum::<f64>() / out.len() as f64);
+    println!(
+        "truth start better energy in {better} of {}; energies {:.1} {:.1}",
+        out.len(),
+        out.iter().map(|o| o.2.energy).sum::<f64>() / out.len() as f64,
+        out.iter().map(|o| o.5.energy).sum::<f64>() / out.len() as f64
+    );
     Ok(())
 }
 
