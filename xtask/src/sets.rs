@@ -102,15 +102,37 @@ pub(crate) fn fresh<'a>(
 fn random_damage(augment: Augment) -> (&'static str, Damage) {
     match augment {
         Augment::No => ("random", Damage::NONE),
-        Augment::Yes => (
-            "random_augmented",
-            Damage {
-                hands: Hands::Each { spread: SPREAD },
-                border: Border::Ragged,
-                ..turned(0.0, 3.0)
-            },
-        ),
+        Augment::Yes => ("random_augmented", augmented()),
     }
+}
+
+/// What training samples are damaged by.
+fn augmented() -> Damage {
+    Damage { hands: Hands::Each { spread: SPREAD }, border: Border::Ragged, ..turned(0.0, 3.0) }
+}
+
+/// A user's poses in place of the prior, gone through as often as it takes for so many samples, each
+/// damaged in its own way. Where they do not turn about the forearm, θ_Z is uniform in 0° … 90°.
+///
+/// # Panics
+/// If there are none.
+pub(crate) fn own_poses<'a>(
+    rig: &'a Rig,
+    hand: &'a HandShape,
+    motion: &[Pose],
+    samples: usize,
+) -> Set<'a> {
+    let turns = motion.iter().any(|pose| pose[Dof::ThetaZ] != motion[0][Dof::ThetaZ]);
+    let draw = |i: usize| {
+        let mut pose = motion[i % motion.len()];
+        if !turns {
+            let mut random = ItemRandom::new(TRAIN_POSES, i as u64);
+            pose[Dof::ThetaZ] = random.between(0.0, std::f64::consts::FRAC_PI_2);
+        }
+        pose
+    };
+    let poses = (0..samples).map(draw).collect();
+    Set { name: "poses_augmented", rig, hand, poses, damage: augmented(), seed: TRAIN_DAMAGE }
 }
 
 /// Whether training samples are damaged.

@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
-use clap::Args;
-use phalanx::{Estimator, Regressor, Shard, Training};
+use clap::{Args, ValueEnum};
+use phalanx::{Estimator, Preset, Regressor, Scenes, Shard, Training};
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
 
 use crate::data_set::DataSet;
 use crate::held_out::method::nystrom;
-use crate::sets::{self, Augment};
+use crate::sets::{self, Augment, Set};
 use crate::table1::{PaperCounts, TableMethod};
 use crate::{files, memory, progress};
 
@@ -26,13 +26,21 @@ pub(crate) struct Arguments {
     /// The regressor.
     #[arg(long, value_enum, default_value = "kernel_ridge")]
     kernels: TableMethod,
+    /// Learn by this preset, from damaged random scenes: of the pose prior or, with `--poses`, of
+    /// poses from a file.
+    #[arg(long, value_enum, conflicts_with_all = ["data_set", "kernels", "augment"])]
+    preset: Option<PresetName>,
+    /// With `--preset`, poses to learn from in place of the prior: CSV, degrees; where θ_Z does not
+    /// vary in it, it is drawn from 0° to 90°.
+    #[arg(long, value_name = "FILE.csv", requires = "preset")]
+    poses: Option<PathBuf>,
     /// The rig, TOML; the desk of fixtures/ by default.
     #[arg(long, value_name = "FILE.toml")]
     rig: Option<PathBuf>,
     /// The hand, TOML; the mean adult of fixtures/ by default.
     #[arg(long, value_name = "FILE.toml")]
     hand: Option<PathBuf>,
-    /// With `--data-set random`, how many independent poses are learnt from: 20,000 by default.
+    /// With `--data-set random` or `--preset`, how many independent poses are learnt from: 20,000 by default.
     #[arg(long, value_name = "N", value_parser = sets::samples)]
     samples: Option<usize>,
     /// With `--data-set random`, give every sample a hand of its own, moved cameras and a ragged
@@ -49,6 +57,27 @@ pub(crate) struct Arguments {
     /// Where the model goes, or a shard's part; target/hand.phalanx by default.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+}
+
+/// The presets by name.
+#[derive(Clone, Copy, ValueEnum)]
+enum PresetName {
+    /// 4,000 scenes.
+    Fast,
+    /// 20,000 scenes.
+    Default,
+    /// 80,000 scenes.
+    Best,
+}
+
+impl PresetName {
+    fn preset(self) -> Preset {
+        match self {
+            Self::Fast => Preset::Fast,
+            Self::Default => Preset::Balanced,
+            Self::Best => Preset::Best,
+        }
+    }
 }
 
 /// Where a model goes by default.
@@ -84,6 +113,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
 fn learn(arguments: &Arguments) -> Result<()> {
     let hand = files::hand(arguments.hand.as_deref())?;
     let rig = views(&files::rig(arguments.rig.as_deref())?, &arguments.views)?;
+    if let Some(name) = arguments.preset {
+        return by_preset(name.preset(), arguments, &rig, &hand);
+    }
     if arguments.data_set == "random" {
         return random(arguments, &rig, &hand);
     }
@@ -114,11 +146,32 @@ fn random(arguments: &Arguments, rig: &Rig, hand: &HandShape) -> Result<()> {
         method => regressor(method, PaperCounts::paper(rig.cameras.len(), set.name)),
     };
     let training = Training { regressor, ..Training::default() };
+    stream(&training, &set, arguments, rig, hand)
+}
+
+/// Learns as a preset says, of the prior's poses or a file's.
+fn by_preset(preset: Preset, arguments: &Arguments, rig: &Rig, hand: &HandShape) -> Result<()> {
+    let samples = arguments.samples.unwrap_or(preset.scenes());
+    let set = match &arguments.poses {
+        Some(path) => sets::own_poses(rig, hand, &files::poses(path)?.poses, samples),
+        None => sets::random(rig, hand, samples, Augment::Yes),
+    };
+    stream(&preset.training(), &set, arguments, rig, hand)
+}
+
+/// Learns from scenes that stream by, all of them or a shard.
+fn stream(
+    training: &Training,
+    set: &Set<'_>,
+    arguments: &Arguments,
+    rig: &Rig,
+    hand: &HandShape,
+) -> Result<()> {
     let bar = progress::Bar::new();
-    let part = training.shard(rig, hand, &set, arguments.shard.unwrap_or(Shard::WHOLE), &bar)?;
+    let part = training.shard(rig, hand, set, arguments.shard.unwrap_or(Shard::WHOLE), &bar)?;
     drop(bar);
     if part.left_out() > 0 {
-        eprintln!("{} of {samples} samples could not be described", part.left_out());
+        eprintln!("{} of {} samples could not be described", part.left_out(), set.count());
     }
     if arguments.shard.is_none() {
         let out = arguments.out.as_deref().unwrap_or(MODEL.as_ref());

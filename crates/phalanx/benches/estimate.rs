@@ -5,8 +5,8 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use image::{GrayImage, RgbImage};
 use phalanx::{
-    Estimator, OrientationRule, Picture, PoseContexts, Regressor, Segmenter, Silent, Training,
-    Workspace, describe_poses, descriptors, targets,
+    Beside, Descriptor, Estimator, OrientationRule, Picture, PoseContexts, Regressor, Segmenter,
+    Silent, Training, Workspace, describe_poses, descriptors, targets,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
@@ -65,8 +65,9 @@ impl TrainingSet {
         let x = descriptors(&self.views, &self.contexts).expect("contexts of these views");
         let model = regressor.fit(&x, &targets(&self.poses)).expect("a good training set").model;
         let (rig, hand) = (self.rig.clone(), self.hand.clone());
-        Estimator::from_parts(rig, hand, OrientationRule::default(), self.views.clone(), model)
-            .expect("parts that fit")
+        let views = self.views.clone();
+        let descriptor = Descriptor::new(OrientationRule::default(), views, Beside::Nothing);
+        Estimator::from_parts(rig, hand, descriptor, model).expect("parts that fit")
     }
 }
 

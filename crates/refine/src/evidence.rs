@@ -99,7 +99,8 @@ impl Evidence {
     /// The crack that is nearest to a pixel position in the image.
     pub(crate) fn nearest(&self, position: DVec2) -> usize {
         let (x, y) = (position.x as usize, position.y as usize);
-        let (x, y) = (x.min(self.mask.width() as usize - 1), y.min(self.mask.height() as usize - 1));
+        let (x, y) =
+            (x.min(self.mask.width() as usize - 1), y.min(self.mask.height() as usize - 1));
         self.nearest[y * self.mask.width() as usize + x] as usize
     }
 

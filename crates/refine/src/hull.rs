@@ -78,8 +78,8 @@ impl Hull {
     pub(crate) fn new(solid: &Primitive) -> Self {
         let balls = solid.balls();
         let at = |k: usize| balls[k.min(balls.len() - 1)];
-        let unsquash =
-            matches!(solid, Primitive::GeneralisedCylinder { .. }).then(|| solid.squash().inverse());
+        let unsquash = matches!(solid, Primitive::GeneralisedCylinder { .. })
+            .then(|| solid.squash().inverse());
         let shift = unsquash.map_or(DVec3::ZERO, |m| m * at(0).center - at(0).center);
         Self {
             centers: [0, 1, 2].map(|k| at(k).center + shift),

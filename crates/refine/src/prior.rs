@@ -57,8 +57,7 @@ impl PosePrior {
             reason: "cannot be had: the covariance is not positive definite".to_owned(),
         })?;
         let inverse = factor.inverse();
-        let precision =
-            (0..count * count).map(|k| inverse[(k % count, k / count)]).collect();
+        let precision = (0..count * count).map(|k| inverse[(k % count, k / count)]).collect();
         Self { mean, dofs: dofs.to_vec(), covariance: covariance.to_vec(), precision }.checked()
     }
 
@@ -136,7 +135,11 @@ impl PosePrior {
         for dof in Dof::ALL {
             let value = self.mean[dof];
             if !value.is_finite() {
-                return Err(Error::NotFinite { what: "the prior's mean of", name: dof.name(), value });
+                return Err(Error::NotFinite {
+                    what: "the prior's mean of",
+                    name: dof.name(),
+                    value,
+                });
             }
         }
         if self.precision.iter().any(|value| !value.is_finite()) {

@@ -1,7 +1,7 @@
 //! The proportions of a hand as numbers that can be fitted.
 
 use glam::{DAffine3, DVec3};
-use phalanx_hand::{HandShape, PosedHand, Pose};
+use phalanx_hand::{HandShape, Pose, PosedHand};
 
 /// How a hand differs from a given one: the logarithms of a factor for its size and of one for every
 /// bone and radius, in the order of [`HandShape::varied`].

@@ -66,14 +66,7 @@ impl FrameSystem {
     }
 
     /// Adds a residual of the border. Both rows are in ascending order.
-    pub(crate) fn add(
-        &mut self,
-        residual: f64,
-        energy: f64,
-        weight: f64,
-        own: &Row,
-        shared: &Row,
-    ) {
+    pub(crate) fn add(&mut self, residual: f64, energy: f64, weight: f64, own: &Row, shared: &Row) {
         self.energy += energy;
         self.border.energy += energy;
         self.border.count += 1;
@@ -119,11 +112,7 @@ pub(crate) struct Step {
 /// numbers.
 ///
 /// `None` where the Hessian is not positive definite to working precision.
-pub(crate) fn solve(
-    frames: &[FrameSystem],
-    shared_prior: &[Known],
-    damping: f64,
-) -> Option<Step> {
+pub(crate) fn solve(frames: &[FrameSystem], shared_prior: &[Known], damping: f64) -> Option<Step> {
     let shared = shared_prior.len();
     let mut reduced = Mat::<f64>::zeros(shared, shared);
     let mut slope = Mat::<f64>::zeros(shared, 1);

@@ -55,7 +55,12 @@ impl View {
     /// Matches solids, in the world, with the border that was seen, both ways: each observed crack
     /// with the solid that it is least outside of, and each crack of the drawn silhouette's solid
     /// with the observed crack that is nearest to it.
-    pub(crate) fn compare(&mut self, solids: &[Primitive], evidence: &Evidence, every: usize) -> Result<()> {
+    pub(crate) fn compare(
+        &mut self,
+        solids: &[Primitive],
+        evidence: &Evidence,
+        every: usize,
+    ) -> Result<()> {
         let camera = evidence.camera();
         self.renderer
             .silhouette_into(solids, &mut self.drawn)

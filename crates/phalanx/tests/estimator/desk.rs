@@ -58,7 +58,7 @@ pub(crate) fn training(orientation: OrientationRule) -> Training {
     vocabulary.clustering.restarts = 1;
     // The penalty by leave-one-out: what is asked about lies between what is learnt.
     let regressor = Regressor::KernelRidge(KernelRidge::default());
-    Training { orientation, vocabulary, regressor }
+    Training { orientation, vocabulary, regressor, ..Training::default() }
 }
 
 fn learn(rig: &Rig, orientation: OrientationRule) -> Estimator {

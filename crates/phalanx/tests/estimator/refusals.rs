@@ -1,9 +1,10 @@
 //! What cannot be estimated from, by name and camera.
 
 use image::{GrayImage, Luma, RgbImage};
-use phalanx::{Error, Estimator, Picture, Segmenter, Workspace};
-use phalanx_codebook::{Codebook, Voting};
-use phalanx_multiview::Concatenation;
+use phalanx::{Beside, Descriptor, Error, Estimator, Picture, Segmenter, Workspace};
+use phalanx_codebook::{AnyCoding, Codebook, Voting};
+use phalanx_multiview::{Codes, Concatenation};
+use phalanx_rvm::Model;
 use phalanx_segmentation::{Error as Segmentation, Evidence, MIN_SIDE, SkinModel};
 
 use crate::desk::{ESTIMATOR, FROM_TOP, difference_deg, estimate, masks, rig, top, unseen};
@@ -133,68 +134,69 @@ fn a_second_crossing_is_reported() {
     assert_eq!(found.forearms[0].crossings, 2);
 }
 
+fn codebook(coding: &AnyCoding) -> Codebook {
+    match coding {
+        AnyCoding::Counts { codebook, .. } => codebook.clone(),
+        other => panic!("the paper's estimator counts: {other:?}"),
+    }
+}
+
 #[test]
 fn parts_that_do_not_fit_are_refused() {
     let estimator = &*ESTIMATOR;
-    let together = |rig, views: &Concatenation, model: &phalanx_rvm::Model| {
+    let together = |rig, codes: &Codes, model: &Model| {
         let (hand, rule) = (estimator.hand().clone(), estimator.orientation());
-        Estimator::from_parts(rig, hand, rule, views.clone(), model.clone())
+        let descriptor = Descriptor::new(rule, codes.clone(), Beside::Nothing);
+        Estimator::from_parts(rig, hand, descriptor, model.clone())
     };
-    let whole = together(rig(), estimator.views(), estimator.model()).unwrap();
+    let (codes, model) = (estimator.descriptor().codes(), &estimator.regression().models()[0]);
+    let whole = together(rig(), codes, model).unwrap();
     assert_eq!(&whole, estimator);
 
     let message = |result: phalanx::Result<Estimator>| result.unwrap_err().to_string();
-    assert_eq!(
-        message(together(top(), estimator.views(), estimator.model())),
-        "3 codebooks where there should be 1"
-    );
+    assert_eq!(message(together(top(), codes, model)), "3 codebooks where there should be 1");
     let two = rig().select(&["side", "top"]).unwrap();
-    let codebooks = estimator.views().codebooks();
+    let codebooks: Vec<Codebook> = codes.views().iter().map(codebook).collect();
     let views = |codebooks: &[Codebook]| {
-        Concatenation::from_parts(codebooks.to_vec(), estimator.views().voting()).unwrap()
+        Concatenation::from_parts(codebooks.to_vec(), Voting::default()).unwrap().into()
     };
     assert_eq!(
-        message(together(two, &views(&codebooks[..2]), estimator.model())),
+        message(together(two, &views(&codebooks[..2]), model)),
         "30 regressor inputs where there should be 20"
     );
-    let mut parts = estimator.model().clone().into_parts();
+    let mut parts = model.clone().into_parts();
     parts.outputs = 27;
     parts.bias.pop();
     parts.noise.pop();
     parts.weights =
         parts.weights.chunks_exact(28).flat_map(|column| &column[..27]).copied().collect();
-    let model = phalanx_rvm::Model::from_parts(parts).unwrap();
+    let fewer = Model::from_parts(parts).unwrap();
     assert_eq!(
-        message(together(rig(), estimator.views(), &model)),
+        message(together(rig(), codes, &fewer)),
         "27 regressor outputs where there should be 28"
     );
     let coarse = Codebook::from_parts(vec![0.25; 40], 4, 0.1).unwrap();
     let mixed = [codebooks[0].clone(), coarse, codebooks[2].clone()];
     assert_eq!(
-        message(together(rig(), &views(&mixed), estimator.model())),
+        message(together(rig(), &views(&mixed), model)),
         "camera 'top': its codebook is of 4 bins where shape contexts have 60"
     );
     let mut unusable = rig();
     unusable.cameras[0].intrinsics.fx = 0.0;
-    assert!(matches!(together(unusable, estimator.views(), estimator.model()), Err(Error::Rig(_))));
+    assert!(matches!(together(unusable, codes, model), Err(Error::Rig(_))));
     assert!(Concatenation::from_parts(codebooks.to_vec(), Voting { neighbours: 11 }).is_err());
 }
 
 #[test]
 fn a_regressor_that_overflows_is_named() {
-    let mut parts = FROM_TOP.model().clone().into_parts();
+    let mut parts = FROM_TOP.regression().models()[0].clone().into_parts();
     parts.weights.fill(1e149);
     parts.column_means.fill(-1e149);
     parts.bias.fill(1e149);
     parts.noise.fill(1e149);
-    let model = phalanx_rvm::Model::from_parts(parts).unwrap();
-    let wild = Estimator::from_parts(
-        top(),
-        FROM_TOP.hand().clone(),
-        FROM_TOP.orientation(),
-        FROM_TOP.views().clone(),
-        model,
-    );
+    let model = Model::from_parts(parts).unwrap();
+    let wild =
+        Estimator::from_parts(top(), FROM_TOP.hand().clone(), FROM_TOP.descriptor().clone(), model);
     match estimate(&wild.unwrap(), &masks(&top(), &unseen()[0])) {
         Err(Error::Overflow { dof, .. }) => assert_eq!(dof, "thumb.abduction"),
         Err(other) => panic!("{other}"),

@@ -6,7 +6,11 @@ mod conditional;
 mod equivariance;
 mod forward;
 mod kernel_ridge;
+<<<<<<< HEAD
 mod multivariate;
+=======
+mod metric;
+>>>>>>> regressor
 mod nystrom;
 mod parts;
 mod problems;

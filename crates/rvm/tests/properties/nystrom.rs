@@ -11,7 +11,7 @@ use crate::problems::{close, columns, few, smooth, solve};
 const BETA: f64 = 0.2;
 
 fn nystrom(penalty: Penalty) -> Nystrom {
-    Nystrom { width: Width::Beta(BETA), penalty }
+    Nystrom { width: Width::Beta(BETA), penalty, ..Nystrom::default() }
 }
 
 /// exp(−β‖a − b‖²) for each column a of the one and b of the other.
