@@ -24,7 +24,7 @@ static LEARNT: LazyLock<Estimator> = LazyLock::new(|| learn().unwrap());
 #[test]
 fn the_first_is_the_estimate_and_the_nearest_is_nearer() {
     let (mut first, mut nearest) = (Vec::new(), Vec::new());
-    for pose in unseen() {
+    for pose in between() {
         let estimate = estimate(&LEARNT, &masks(&top(), &pose)).unwrap();
         let hypotheses = LEARNT.hypotheses(&estimate, 5).unwrap();
         assert_eq!(hypotheses[0].pose, estimate.pose);
@@ -40,7 +40,7 @@ fn the_first_is_the_estimate_and_the_nearest_is_nearer() {
         }
     }
     let (first, nearest) = (mean(first.into_iter()), mean(nearest.into_iter()));
-    assert!(nearest < 0.9 * first, "{nearest} {first}");
+    assert!(nearest < 0.95 * first, "{nearest} {first}");
 }
 
 #[test]

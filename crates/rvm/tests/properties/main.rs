@@ -6,11 +6,8 @@ mod conditional;
 mod equivariance;
 mod forward;
 mod kernel_ridge;
-<<<<<<< HEAD
-mod multivariate;
-=======
 mod metric;
->>>>>>> regressor
+mod multivariate;
 mod nystrom;
 mod parts;
 mod problems;
