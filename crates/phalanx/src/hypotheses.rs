@@ -2,16 +2,24 @@
 
 use faer::Mat;
 use phalanx_hand::{Dof, Pose, Unit};
+use phalanx_refine::Refined;
 use phalanx_rvm::ConditionalDensity;
+use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
-use crate::{Error, Estimate, Estimator, Progress, Result, Scenes, describe_scenes, targets};
+use crate::{
+    Error, Estimate, Estimator, Progress, Refiner, Result, Scenes, describe_scenes, targets,
+};
 
 /// Scenes with estimates near to one that say how such an estimate errs.
 const NEIGHBOURS: usize = 200;
 /// Millimetres of a wrist's offset that count as much as a radian of an angle: about what a radian
 /// at the knuckle moves the fingertip.
 const MM_PER_RADIAN: f64 = 80.0;
+
+/// Least spread of a hypothesis in refinement, as a share of the estimate's standard deviation: a
+/// hypothesis that few errors stand behind is not thereby certain.
+const LEAST_SPREAD: f64 = 0.25;
 
 /// One pose among several that a hand may have.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +84,37 @@ impl Estimator {
         let errors = self.errors().ok_or(Error::NoErrors)?;
         let found = errors.hypotheses(&estimate.pose.0, most)?;
         Ok(found.into_iter().map(hypothesis).collect())
+    }
+}
+
+impl Refiner {
+    /// Refines every hypothesis about an estimate, each with what it says of itself as the prior; the
+    /// most plausible first.
+    ///
+    /// The hypotheses are taken for the parts of a mixture of Gaussians: how plausible one is follows
+    /// from its weight, from how narrow it is and from its [energy](Refined::energy) once refined.
+    ///
+    /// # Errors
+    /// As of [`refine`](Self::refine).
+    pub fn refine_hypotheses(
+        &self,
+        silhouettes: &[Silhouette],
+        estimate: &Estimate,
+        hypotheses: &[Hypothesis],
+    ) -> Result<Vec<Refined>> {
+        let refine = |hypothesis: &Hypothesis| {
+            let pose = hypothesis.pose;
+            let std = std::array::from_fn(|dof| {
+                hypothesis.std[dof].max(LEAST_SPREAD * estimate.std[dof])
+            });
+            let refined = self.refine(silhouettes, &Estimate { pose, std, ..estimate.clone() })?;
+            let width: f64 = std.iter().filter(|&&std| std > 0.0).map(|std| std.ln()).sum();
+            let weight = hypothesis.weight.max(1.0 / NEIGHBOURS as f64);
+            Ok((refined.energy + width - weight.ln(), refined))
+        };
+        let mut refined = hypotheses.iter().map(refine).collect::<Result<Vec<_>>>()?;
+        refined.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(refined.into_iter().map(|(_, refined)| refined).collect())
     }
 }
 
