@@ -83,7 +83,7 @@ impl Estimator {
     pub fn hypotheses(&self, estimate: &Estimate, most: usize) -> Result<Vec<Hypothesis>> {
         let errors = self.errors().ok_or(Error::NoErrors)?;
         let found = errors.hypotheses(&estimate.pose.0, most)?;
-        Ok(found.into_iter().map(hypothesis).collect())
+        Ok(found.iter().map(hypothesis).collect())
     }
 }
 
@@ -118,7 +118,7 @@ impl Refiner {
     }
 }
 
-fn hypothesis(found: phalanx_rvm::Hypothesis) -> Hypothesis {
+fn hypothesis(found: &phalanx_rvm::Hypothesis) -> Hypothesis {
     Hypothesis {
         pose: Pose(std::array::from_fn(|dof| found.mean[dof])),
         std: std::array::from_fn(|dof| found.std[dof]),

@@ -5,6 +5,7 @@ mod desk;
 mod estimating;
 mod hypotheses;
 mod invariance;
+mod learnt_metric;
 mod model_file;
 mod photographs;
 mod refusals;

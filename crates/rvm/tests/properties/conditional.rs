@@ -121,6 +121,9 @@ fn two_answers_are_told_apart() {
     assert!(hypotheses[1].mean[0] * hypotheses[2].mean[0] < 0.0);
 }
 
+/// A change to a density's parts.
+type Change = fn(&mut ConditionalDensityParts);
+
 #[test]
 fn what_cannot_be_one_is_named() {
     let mut source = Source::new(8);
@@ -142,7 +145,6 @@ fn what_cannot_be_one_is_named() {
         density.hypotheses(&[0.0; 2], 0),
         Err(Error::Parameter { name: "count", .. })
     ));
-    type Change = fn(&mut ConditionalDensityParts);
     let changes: [(&str, Change); 5] = [
         ("outputs", |p| p.outputs = 0),
         ("neighbours", |p| p.neighbours = 100),
