@@ -10,6 +10,7 @@ mod fixtures;
 mod global_pose;
 mod headline;
 mod held_out;
+mod hypotheses;
 mod lab;
 mod memory;
 mod merge;
@@ -24,11 +25,11 @@ mod plate;
 mod postures;
 mod principal_axes;
 mod progress;
-mod refine_trial;
 mod report;
 mod saturation;
 mod scale;
 mod scene_list;
+mod selection;
 mod sets;
 mod skin_model;
 mod split;
@@ -69,6 +70,10 @@ enum Command {
     /// Test where hands are found and how they are turned, anywhere in the volume.
     #[command(name = "eval-global")]
     EvalGlobal(global_pose::Arguments),
+    /// Compare ways of choosing which samples to keep, and write docs/selection.md.
+    Selection(selection::Arguments),
+    /// Compare ways of naming several poses for one picture, and write docs/hypotheses.md.
+    Hypotheses(hypotheses::Arguments),
     /// Put one of the paper's figures or claims to the test.
     Experiment(experiments::Arguments),
     /// Run every experiment and write one page that a reader of the paper can follow.
@@ -87,7 +92,6 @@ enum Command {
     Headline(headline::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
     Pictures(pictures::Arguments),
-    RefineTrial(refine_trial::Arguments),
     /// Time every stage and write docs/performance.md.
     Performance(performance::Arguments),
 }
@@ -118,6 +122,8 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::EvalTable1(arguments) => table1::run(arguments)?,
         Command::EvalHeldOut(arguments) => return held_out::run(arguments),
         Command::EvalGlobal(arguments) => global_pose::run(arguments)?,
+        Command::Selection(arguments) => selection::run(arguments)?,
+        Command::Hypotheses(arguments) => hypotheses::run(arguments)?,
         Command::Experiment(arguments) => experiments::run(arguments)?,
         Command::Report(arguments) => return report::run(arguments),
         Command::Headline(arguments) => headline::run(arguments)?,
@@ -127,7 +133,6 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::ContactSheet(arguments) => contact_sheet::run(arguments)?,
         Command::TwoCamera(arguments) => two_camera::run(arguments)?,
         Command::Pictures(arguments) => pictures::run(arguments)?,
-        Command::RefineTrial(arguments) => refine_trial::run(arguments)?,
         Command::Performance(arguments) => performance::run(arguments)?,
     }
     Ok(ExitCode::SUCCESS)

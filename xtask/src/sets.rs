@@ -25,6 +25,8 @@ const TRAIN_DAMAGE: u64 = 2;
 const TEST_POSES: u64 = 3;
 const TEST_ANGLES: u64 = 4;
 const TEST_DAMAGE: u64 = 5;
+const ERROR_POSES: u64 = 6;
+const ERROR_DAMAGE: u64 = 7;
 
 /// Poses of a hand, seen through a rig that may be damaged.
 pub(crate) struct Set<'a> {
@@ -121,11 +123,29 @@ pub(crate) fn random<'a>(
     augment: Augment,
 ) -> Set<'a> {
     let poses = independent(samples, TRAIN_POSES, |random| coupled_pose(|| random.uniform()));
-    let (name, damage) = match augment {
+    let (name, damage) = random_damage(augment);
+    Set { name, rig, hand, poses, damage, seed: TRAIN_DAMAGE }
+}
+
+/// Samples like those of [`random`], none of which it holds: to learn how an estimator errs on what
+/// it was not trained on.
+pub(crate) fn fresh<'a>(
+    rig: &'a Rig,
+    hand: &'a HandShape,
+    samples: usize,
+    augment: Augment,
+) -> Set<'a> {
+    let poses = independent(samples, ERROR_POSES, |random| coupled_pose(|| random.uniform()));
+    let (name, damage) = random_damage(augment);
+    Set { name, rig, hand, poses, damage, seed: ERROR_DAMAGE }
+}
+
+/// The name and the damage of random sets.
+fn random_damage(augment: Augment) -> (&'static str, Damage) {
+    match augment {
         Augment::No => ("random", Damage::NONE),
         Augment::Yes => ("random_augmented", augmented()),
-    };
-    Set { name, rig, hand, poses, damage, seed: TRAIN_DAMAGE }
+    }
 }
 
 /// What training samples are damaged by.

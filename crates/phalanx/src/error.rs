@@ -63,6 +63,9 @@ pub enum Error {
     /// The regressor could not be fitted or does not fit the descriptor.
     #[error(transparent)]
     Regression(#[from] phalanx_rvm::Error),
+    /// Hypotheses were asked of an estimator that does not know how its estimates err.
+    #[error("the estimator has not learnt how its estimates err, so it has no hypotheses")]
+    NoErrors,
     /// A codebook of something other than shape contexts.
     #[error(
         "camera '{camera}': its codebook is of {found} bins where shape contexts have {expected}"

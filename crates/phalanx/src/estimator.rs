@@ -4,6 +4,7 @@ use glam::DVec3;
 use image::GrayImage;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
+use phalanx_rvm::ConditionalDensity;
 use phalanx_segmentation::{Forearm, Silhouette};
 
 use crate::{
@@ -19,6 +20,7 @@ pub struct Estimator {
     hand: HandShape,
     descriptor: Descriptor,
     regression: Regression,
+    errors: Option<ConditionalDensity>,
 }
 
 /// What is known of a hand after looking at it.
@@ -88,7 +90,19 @@ impl Estimator {
                 return Err(Error::Mismatch { part, found, expected });
             }
         }
-        Ok(Self { rig, hand, descriptor, regression })
+        Ok(Self { rig, hand, descriptor, regression, errors: None })
+    }
+
+    /// The same estimator, knowing how its estimates err.
+    ///
+    /// # Errors
+    /// Errors of something other than poses.
+    pub fn with_errors(self, errors: ConditionalDensity) -> Result<Self> {
+        let (found, expected) = (errors.outputs(), Dof::COUNT);
+        if found != expected {
+            return Err(Error::Mismatch { part: "numbers in its errors", found, expected });
+        }
+        Ok(Self { errors: Some(errors), ..self })
     }
 
     /// The cameras and the volume it was learnt for.
@@ -114,6 +128,11 @@ impl Estimator {
     /// Its regressor.
     pub fn regression(&self) -> &Regression {
         &self.regression
+    }
+
+    /// How its estimates err, if it has [learnt it](Self::learn_errors).
+    pub fn errors(&self) -> Option<&ConditionalDensity> {
+        self.errors.as_ref()
     }
 
     /// Estimates the pose from one picture per camera, in the order of the rig's cameras.

@@ -4,13 +4,13 @@ use std::borrow::Cow;
 
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
-use phalanx_rvm::{Model, ModelParts, Projected};
+use phalanx_rvm::{ConditionalDensity, ConditionalDensityParts, Model, ModelParts, Projected};
 use serde::{Deserialize, Serialize};
 
 use crate::container::Container;
 use crate::{Descriptor, Estimator, Regression, Result};
 
-const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 3 };
+const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 4 };
 
 /// What the payload holds.
 #[derive(Serialize, Deserialize)]
@@ -19,6 +19,7 @@ struct Payload<'a> {
     hand: Cow<'a, HandShape>,
     descriptor: Cow<'a, Descriptor>,
     regression: Stored<'a>,
+    errors: Option<Cow<'a, ConditionalDensityParts>>,
 }
 
 /// A regression in plain numbers.
@@ -42,6 +43,7 @@ impl Estimator {
                 Regression::Joint(model) => Stored::Joint(Cow::Borrowed(model.parts())),
                 Regression::Projected(models) => Stored::Projected(Cow::Borrowed(models)),
             },
+            errors: self.errors().map(|errors| Cow::Borrowed(errors.parts())),
         };
         MODEL.encode(&payload)
     }
@@ -52,11 +54,18 @@ impl Estimator {
     /// Bytes that are no model, of another format, truncated, corrupt, or whose parts do not
     /// fit each other.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let Payload { rig, hand, descriptor, regression } = MODEL.decode(bytes)?;
+        let Payload { rig, hand, descriptor, regression, errors } = MODEL.decode(bytes)?;
         let regression = match regression {
             Stored::Joint(parts) => Model::from_parts(parts.into_owned())?.into(),
             Stored::Projected(models) => Regression::Projected(models.into_owned()),
         };
-        Self::from_parts(rig.into_owned(), hand.into_owned(), descriptor.into_owned(), regression)
+        let (rig, hand) = (rig.into_owned(), hand.into_owned());
+        let estimator = Self::from_parts(rig, hand, descriptor.into_owned(), regression)?;
+        match errors {
+            Some(parts) => {
+                estimator.with_errors(ConditionalDensity::from_parts(parts.into_owned())?)
+            }
+            None => Ok(estimator),
+        }
     }
 }

@@ -4,7 +4,7 @@ use faer::{Mat, MatRef};
 use phalanx_hand::{Digit, Dof};
 use phalanx_rvm::{
     Block, Bridges, Cascade, Columns, Fit, ForwardSelection, GradientMetric, Kernel, KernelRidge,
-    Metric, Nystrom, Pilot, Ridge, Sums, Tipping,
+    Metric, MultivariateRvm, Nystrom, Pilot, Ridge, Sums, Tipping,
 };
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +27,8 @@ pub enum Regressor {
     Forward(ForwardSelection),
     /// Tipping's relevance vector machine, one per output.
     Tipping(Tipping),
+    /// The relevance vector machine whose outputs share their vectors.
+    MultivariateRvm(MultivariateRvm),
     /// Dense kernel ridge regression.
     KernelRidge(KernelRidge),
     /// Kernel ridge regression on Gaussians of some of the samples.
@@ -112,12 +114,17 @@ impl Regressor {
             Self::Forward(fitter) if few || fitter.kernel == Kernel::Linear => fitter.fit(x, y),
             Self::Tipping(fitter) => fitter.fit(x, y),
             Self::KernelRidge(fitter) => fitter.fit(x, y),
+            Self::MultivariateRvm(fitter) if few || fitter.kernel == Kernel::Linear => {
+                fitter.fit(x, y)
+            }
             Self::LearntMetric(_) => {
                 return Err(Error::InShardsOnly { regressor: "regression in a learnt metric" });
             }
-            Self::Bridges(_) | Self::Cascade(_) | Self::Forward(_) | Self::Nystrom(_) => {
-                return self.fit_to_sums_of(x, y);
-            }
+            Self::Bridges(_)
+            | Self::Cascade(_)
+            | Self::Forward(_)
+            | Self::MultivariateRvm(_)
+            | Self::Nystrom(_) => return self.fit_to_sums_of(x, y),
         };
         Ok(fit?)
     }
@@ -132,6 +139,7 @@ impl Regressor {
             Self::Ridge(_) => Ok(Kernel::Linear),
             Self::Bridges(fitter) => Ok(fitter.kernel),
             Self::Forward(fitter) => Ok(fitter.kernel),
+            Self::MultivariateRvm(fitter) => Ok(fitter.kernel),
             Self::Nystrom(fitter) => Ok(Kernel::Gaussian(fitter.width)),
             Self::LearntMetric(fitter) => Ok(Kernel::Gaussian(fitter.regression.width)),
             Self::Cascade(_) => {
@@ -151,6 +159,7 @@ impl Regressor {
             Self::Ridge(fitter) => fitter.fit_sums(columns, sums)?,
             Self::Bridges(fitter) => fitter.fit_sums(columns, sums)?,
             Self::Forward(fitter) => fitter.fit_sums(columns, sums)?,
+            Self::MultivariateRvm(fitter) => fitter.fit_sums(columns, sums)?,
             Self::Nystrom(fitter) => fitter.fit_sums(columns, sums)?,
             Self::LearntMetric(fitter) => fitter.regression.fit_sums(columns, sums)?,
             Self::Cascade(_) | Self::Tipping(_) | Self::KernelRidge(_) => {

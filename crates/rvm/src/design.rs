@@ -78,8 +78,8 @@ impl Equations for Design<'_> {
         linalg::product(self.phi.transpose(), self.targets())
     }
 
-    fn energy(&self) -> f64 {
-        linalg::inner(self.targets(), self.targets())
+    fn energies(&self) -> Vec<f64> {
+        self.targets().col_iter().map(|target| target.squared_norm_l2()).collect()
     }
 
     fn residuals(&self, kept: &[usize], weights: MatRef<'_, f64>) -> Vec<f64> {

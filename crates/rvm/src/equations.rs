@@ -32,8 +32,13 @@ pub(crate) trait Equations {
     /// B = ΦᵀY, p×m.
     fn correlations(&self) -> Mat<f64>;
 
+    /// ‖yⱼ‖² of each target.
+    fn energies(&self) -> Vec<f64>;
+
     /// ‖Y‖².
-    fn energy(&self) -> f64;
+    fn energy(&self) -> f64 {
+        self.energies().iter().sum()
+    }
 
     /// ‖yⱼ − Φ wⱼ‖² of each target for weights (kept×m) on the columns `kept`.
     fn residuals(&self, kept: &[usize], weights: MatRef<'_, f64>) -> Vec<f64>;

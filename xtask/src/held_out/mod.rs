@@ -1,8 +1,8 @@
 //! `cargo xtask eval-held-out`: tests on what was never seen, which the paper did not take.
 
 mod curves;
-mod errors;
-mod learner;
+pub(crate) mod errors;
+pub(crate) mod learner;
 mod masks;
 pub(crate) mod method;
 mod presets;

@@ -73,8 +73,8 @@ impl Equations for Summed<'_> {
         self.correlations.clone()
     }
 
-    fn energy(&self) -> f64 {
-        self.energies.iter().sum()
+    fn energies(&self) -> Vec<f64> {
+        self.energies.clone()
     }
 
     fn residuals(&self, kept: &[usize], weights: MatRef<'_, f64>) -> Vec<f64> {

@@ -2,8 +2,8 @@
 
 use faer::Mat;
 use phalanx_rvm::{
-    Bridges, Cascade, Error, ForwardSelection, Kernel, KernelRidge, Lambda, Nystrom, Penalty,
-    Ridge, Standardiser, Stop, Tipping, Width,
+    Bridges, Cascade, Error, ForwardSelection, Kernel, KernelRidge, Lambda, MultivariateRvm,
+    Nystrom, Penalty, Ridge, Standardiser, Stop, Tipping, Width,
 };
 use proptest::prelude::*;
 
@@ -100,6 +100,7 @@ fn hyper_parameters_out_of_range_are_named() {
     let bridges = Bridges::default();
     let forward = ForwardSelection::default();
     let tipping = Tipping::default();
+    let shared = MultivariateRvm::default();
     let name = |result: phalanx_rvm::Result<phalanx_rvm::Fit>| match result.unwrap_err() {
         Error::Parameter { name, .. } => name,
         other => panic!("{other}"),
@@ -113,6 +114,8 @@ fn hyper_parameters_out_of_range_are_named() {
         assert_eq!(name(ForwardSelection { lambda: bad, ..forward }.fit(x, y)), "lambda");
         assert_eq!(name(Tipping { tolerance: bad, ..tipping }.fit(x, y)), "tolerance");
         assert_eq!(name(Tipping { noise_floor: bad, ..tipping }.fit(x, y)), "noise_floor");
+        assert_eq!(name(MultivariateRvm { tolerance: bad, ..shared }.fit(x, y)), "tolerance");
+        assert_eq!(name(MultivariateRvm { noise_floor: bad, ..shared }.fit(x, y)), "noise_floor");
         let lambda = Lambda::LeaveOneOut(vec![1.0, bad]);
         assert_eq!(name(KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y)), "lambda");
         let penalty = Penalty::CrossValidated(vec![1.0, bad]);
@@ -125,6 +128,7 @@ fn hyper_parameters_out_of_range_are_named() {
     assert_eq!(name(Bridges { stop: Stop::Threshold(-1.0), ..bridges }.fit(x, y)), "threshold");
     assert_eq!(name(Bridges { max_iterations: 0, ..bridges }.fit(x, y)), "max_iterations");
     assert_eq!(name(Tipping { max_iterations: 0, ..tipping }.fit(x, y)), "max_iterations");
+    assert_eq!(name(MultivariateRvm { most: Some(0), ..shared }.fit(x, y)), "most");
     let lambda = Lambda::LeaveOneOut(Vec::new());
     let error = KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y).unwrap_err();
     assert!(matches!(error, Error::Empty { .. }));
@@ -148,6 +152,9 @@ fn too_few_steps_are_reported_and_not_refused() {
     assert_eq!(bridges.report.penalty, Some(Bridges::default().nu));
     let tipping = Tipping { max_iterations: 1, ..Tipping::default() }.fit(x, y).unwrap();
     assert!(!tipping.report.converged && tipping.report.iterations == 2);
+    let shared = MultivariateRvm { max_iterations: 1, ..MultivariateRvm::default() };
+    let shared = shared.fit(x, y).unwrap();
+    assert!(!shared.report.converged && shared.report.iterations == 1);
 }
 
 #[test]

@@ -2,10 +2,12 @@
 
 mod bad_input;
 mod bridges;
+mod conditional;
 mod equivariance;
 mod forward;
 mod kernel_ridge;
 mod metric;
+mod multivariate;
 mod nystrom;
 mod parts;
 mod problems;

@@ -1,0 +1,127 @@
+//! Several poses for one picture: what the silhouettes leave open.
+
+use faer::Mat;
+use phalanx_hand::{Dof, Pose, Unit};
+use phalanx_refine::Refined;
+use phalanx_rvm::ConditionalDensity;
+use phalanx_segmentation::Silhouette;
+use rayon::prelude::*;
+
+use crate::{
+    Error, Estimate, Estimator, Progress, Refiner, Result, Scenes, describe_scenes, targets,
+};
+
+/// Scenes with estimates near to one that say how such an estimate errs.
+const NEIGHBOURS: usize = 200;
+/// Millimetres of a wrist's offset that count as much as a radian of an angle: about what a radian
+/// at the knuckle moves the fingertip.
+const MM_PER_RADIAN: f64 = 80.0;
+
+/// Least spread of a hypothesis in refinement, as a share of the estimate's standard deviation: a
+/// hypothesis that few errors stand behind is not thereby certain.
+const LEAST_SPREAD: f64 = 0.25;
+
+/// One pose among several that a hand may have.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hypothesis {
+    /// The pose, radians and millimetres.
+    pub pose: Pose,
+    /// How far poses that this one stands for stray from it, root mean square of each number, in
+    /// its unit.
+    pub std: [f64; Dof::COUNT],
+    /// The probability that the truth is nearer to this pose than to the other hypotheses.
+    pub weight: f64,
+}
+
+impl Estimator {
+    /// Learns how its estimates err, from scenes that it was not trained on: some thousands of
+    /// independent ones from the prior of the training.
+    ///
+    /// # Errors
+    /// A camera that cannot draw; the first scene's reason, if no scene can be described.
+    pub fn learn_errors(self, scenes: &dyn Scenes, progress: &dyn Progress) -> Result<Self> {
+        progress.begin("learn what is left open", scenes.count());
+        let all: Vec<usize> = (0..scenes.count()).collect();
+        let described = describe_scenes(self.rig(), scenes, &all, self.descriptor(), progress)?;
+        let (mut numbers, mut descriptors, mut first) = (Vec::new(), Vec::new(), None);
+        for (number, described) in described.into_iter().enumerate() {
+            match described {
+                Ok(x) => {
+                    numbers.push(number);
+                    descriptors.push(x);
+                }
+                Err(error) => first = first.or(Some(error)),
+            }
+        }
+        if numbers.is_empty() {
+            return Err(first.unwrap_or(Error::TooFewPoses { found: 0 }));
+        }
+        let predict = |x: &Vec<f64>| {
+            let (mut pose, mut std) = (Pose::REST, [0.0; Dof::COUNT]);
+            let mut scratch = phalanx_rvm::Scratch::default();
+            self.regression().predict_into(x, &mut scratch, &mut pose.0, &mut std)?;
+            Ok(pose)
+        };
+        let estimates: Vec<Pose> = descriptors.par_iter().map(predict).collect::<Result<_>>()?;
+        let truth: Vec<Pose> = numbers.iter().map(|&number| scenes.scene(number).pose).collect();
+        let (estimates, truth): (Mat<f64>, Mat<f64>) = (targets(&estimates), targets(&truth));
+        let neighbours = NEIGHBOURS.min(numbers.len());
+        let units = Dof::ALL.map(|dof| match dof.unit() {
+            Unit::Angle => 1.0,
+            Unit::Length => MM_PER_RADIAN,
+        });
+        let (estimates, truth) = (estimates.as_ref(), truth.as_ref());
+        self.with_errors(ConditionalDensity::fit(estimates, truth, &units, neighbours)?)
+    }
+
+    /// At most `most` poses that may be behind an estimate, the estimate's own first and the others
+    /// by falling weight.
+    ///
+    /// # Errors
+    /// An estimator that has not [learnt how it errs](Self::learn_errors), or no or too many
+    /// hypotheses asked for.
+    pub fn hypotheses(&self, estimate: &Estimate, most: usize) -> Result<Vec<Hypothesis>> {
+        let errors = self.errors().ok_or(Error::NoErrors)?;
+        let found = errors.hypotheses(&estimate.pose.0, most)?;
+        Ok(found.iter().map(hypothesis).collect())
+    }
+}
+
+impl Refiner {
+    /// Refines every hypothesis about an estimate, each with what it says of itself as the prior; the
+    /// most plausible first.
+    ///
+    /// The hypotheses are taken for the parts of a mixture of Gaussians: how plausible one is follows
+    /// from its weight, from how narrow it is and from its [energy](Refined::energy) once refined.
+    ///
+    /// # Errors
+    /// As of [`refine`](Self::refine).
+    pub fn refine_hypotheses(
+        &self,
+        silhouettes: &[Silhouette],
+        estimate: &Estimate,
+        hypotheses: &[Hypothesis],
+    ) -> Result<Vec<Refined>> {
+        let refine = |hypothesis: &Hypothesis| {
+            let pose = hypothesis.pose;
+            let std = std::array::from_fn(|dof| {
+                hypothesis.std[dof].max(LEAST_SPREAD * estimate.std[dof])
+            });
+            let refined = self.refine(silhouettes, &Estimate { pose, std, ..estimate.clone() })?;
+            let width: f64 = std.iter().filter(|&&std| std > 0.0).map(|std| std.ln()).sum();
+            let weight = hypothesis.weight.max(1.0 / NEIGHBOURS as f64);
+            Ok((refined.energy + width - weight.ln(), refined))
+        };
+        let mut refined = hypotheses.iter().map(refine).collect::<Result<Vec<_>>>()?;
+        refined.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(refined.into_iter().map(|(_, refined)| refined).collect())
+    }
+}
+
+fn hypothesis(found: &phalanx_rvm::Hypothesis) -> Hypothesis {
+    Hypothesis {
+        pose: Pose(std::array::from_fn(|dof| found.mean[dof])),
+        std: std::array::from_fn(|dof| found.std[dof]),
+        weight: found.weight,
+    }
+}
