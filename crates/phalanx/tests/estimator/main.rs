@@ -9,5 +9,4 @@ mod photographs;
 mod refusals;
 mod shards;
 mod training;
-mod windows;
 mod working_size;
