@@ -1,5 +1,7 @@
 //! Hands and their wrists in masks of every kind.
 
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
 use image::{GrayImage, Luma};
 use phalanx_segmentation::{Cleanup, Error, HandFinder, LocatedHand, WristModel, WristTrainer};
 use proptest::prelude::*;
@@ -19,7 +21,7 @@ struct Drawn {
 }
 
 const UPRIGHT: Drawn =
-    Drawn { wrist: [60.0, 62.0], angle: -1.5707, scale: 0.3, arm: 1000.0, elbow: 1000.0 };
+    Drawn { wrist: [60.0, 62.0], angle: -FRAC_PI_2, scale: 0.3, arm: 1000.0, elbow: 1000.0 };
 
 fn capsule(p: [f64; 2], a: [f64; 2], b: [f64; 2], radius: f64) -> bool {
     let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
@@ -83,7 +85,7 @@ fn wrists_are_found_however_the_arm_ends() {
     let bent = Drawn { elbow: 230.0, ..UPRIGHT };
     bent.check(&bent.mask(140, 160));
     // Through a corner, by two borders: both crossings are of the arm.
-    let diagonal = Drawn { wrist: [45.0, 75.0], angle: -std::f64::consts::FRAC_PI_4, ..UPRIGHT };
+    let diagonal = Drawn { wrist: [45.0, 75.0], angle: -FRAC_PI_4, ..UPRIGHT };
     diagonal.check(&diagonal.mask(120, 120));
 }
 

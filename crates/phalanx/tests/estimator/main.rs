@@ -11,5 +11,4 @@ mod photographs;
 mod refusals;
 mod shards;
 mod training;
-mod windows;
 mod working_size;
