@@ -38,6 +38,23 @@ pub(crate) struct Set<'a> {
     seed: u64,
 }
 
+impl Set<'_> {
+    /// How many hands are seen in turn: scene `number` shows hand `number` modulo this.
+    pub(crate) fn hands(&self) -> usize {
+        match self.damage.hands {
+            Hands::Several { count, .. } => count,
+            Hands::Given | Hands::Each { .. } => 1,
+        }
+    }
+
+    /// Other motion of the same hands, damaged alike: takes of `complex` that no test holds.
+    pub(crate) fn other_motion(&self) -> Self {
+        let frames: Vec<Pose> = (TAKES + 1..=2 * TAKES).flat_map(complex_take).collect();
+        let poses = turned_at_random(&frames, &BETWEEN_DEG);
+        Self { poses, damage: self.damage.clone(), ..*self }
+    }
+}
+
 impl Scenes for Set<'_> {
     fn count(&self) -> usize {
         self.poses.len()

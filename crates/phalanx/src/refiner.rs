@@ -3,10 +3,12 @@
 use glam::DAffine3;
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{Dof, HandShape, Pose};
-use phalanx_refine::{Evidence, PosePrior, Refined, Refinement};
+use phalanx_refine::{
+    Calibrated, Calibration, CalibrationFrame, Evidence, PosePrior, Refined, Refinement,
+};
 use phalanx_segmentation::Silhouette;
 
-use crate::{Estimate, Result, working_camera};
+use crate::{Error, Estimate, Hypothesis, Result, working_camera};
 
 /// Fits the hand to the silhouettes that it was estimated from.
 #[derive(Debug, Clone)]
@@ -50,6 +52,17 @@ impl Refiner {
         Ok(Self { hand: hand.clone(), ..self.clone() })
     }
 
+    /// The same, refining otherwise.
+    #[must_use]
+    pub fn with_refinement(&self, refinement: Refinement) -> Self {
+        Self { refinement, ..self.clone() }
+    }
+
+    /// How it refines.
+    pub fn refinement(&self) -> &Refinement {
+        &self.refinement
+    }
+
     /// The hand that is fitted.
     pub fn hand(&self) -> &HandShape {
         &self.hand
@@ -65,6 +78,10 @@ impl Refiner {
     /// # Errors
     /// A silhouette of another size, or without a border.
     pub fn evidence(&self, silhouettes: &[Silhouette]) -> Result<Vec<Evidence>> {
+        if silhouettes.len() != self.cameras.len() {
+            let cameras = self.cameras.iter().map(|camera| camera.name.clone()).collect();
+            return Err(Error::PictureCount { cameras, found: silhouettes.len() });
+        }
         let pairs = self.cameras.iter().zip(silhouettes);
         let evidence = pairs.map(|(camera, seen)| Evidence::new(camera, &seen.mask));
         Ok(evidence.collect::<Result<_, _>>()?)
@@ -77,6 +94,52 @@ impl Refiner {
     /// An estimate that is not finite.
     pub fn prior(&self, pose: &Pose, std: &[f64; Dof::COUNT]) -> Result<PosePrior> {
         Ok(PosePrior::independent(*pose, std)?.and(&self.postures)?)
+    }
+
+    /// One frame to calibrate a hand from.
+    ///
+    /// # Errors
+    /// Silhouettes of another number or size than the cameras', or without a border.
+    pub fn frame(
+        &self,
+        silhouettes: &[Silhouette],
+        estimate: &Estimate,
+    ) -> Result<CalibrationFrame> {
+        let prior = self.prior(&estimate.pose, &estimate.std)?;
+        let evidence = self.evidence(silhouettes)?;
+        Ok(CalibrationFrame { evidence, start: *prior.mean(), prior })
+    }
+
+    /// Fits the hand's proportions to several frames of it.
+    ///
+    /// # Errors
+    /// No frame, or frames that differ in their views.
+    pub fn calibrate(
+        &self,
+        calibration: &Calibration,
+        frames: &[CalibrationFrame],
+    ) -> Result<Calibrated> {
+        Ok(calibration.run(&self.hand, &self.rest, frames)?)
+    }
+
+    /// Refines an estimate and, where that leaves borders apart or there is one view alone, which
+    /// several poses can explain, every hypothesis about it too; the most plausible first.
+    ///
+    /// # Errors
+    /// As of [`refine`](Self::refine).
+    pub fn refine_best(
+        &self,
+        silhouettes: &[Silhouette],
+        estimate: &Estimate,
+        hypotheses: &[Hypothesis],
+    ) -> Result<Vec<Refined>> {
+        if silhouettes.len() > 1 || hypotheses.is_empty() {
+            let refined = self.refine(silhouettes, estimate)?;
+            if hypotheses.is_empty() || refined.border_px <= self.refinement.content {
+                return Ok(vec![refined]);
+            }
+        }
+        self.refine_hypotheses(silhouettes, estimate, hypotheses)
     }
 
     /// Refines an estimate.

@@ -21,12 +21,12 @@ pub(crate) struct Slope {
 impl Proportions {
     /// Those of the given hand itself.
     pub(crate) fn of(given: &HandShape) -> Self {
-        let mut count = 1;
-        given.varied(|| {
-            count += 1;
+        let mut logarithms = vec![0.0];
+        let _as_given = given.varied(|| {
+            logarithms.push(0.0);
             1.0
         });
-        Self { logarithms: vec![0.0; count] }
+        Self { logarithms }
     }
 
     /// The hand.

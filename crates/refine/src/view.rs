@@ -13,6 +13,7 @@ use crate::{Error, Evidence, Result};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Match {
     /// The ray, in the camera's frame.
+    #[cfg(test)]
     pub(crate) ray: DVec3,
     /// Which solid.
     pub(crate) solid: usize,
@@ -29,6 +30,18 @@ const CLOSE: f64 = 1.2;
 struct Seen {
     hull: Hull,
     bound: Bound,
+}
+
+impl Match {
+    #[cfg_attr(not(test), allow(unused_variables, reason = "tests hold the same ray again"))]
+    fn new(ray: DVec3, solid: usize, passing: Passing) -> Self {
+        Self {
+            #[cfg(test)]
+            ray,
+            solid,
+            passing,
+        }
+    }
 }
 
 /// The memory in which one camera's view of one pose after another is compared with what it saw.
@@ -94,7 +107,7 @@ impl View {
             }
             let ray = evidence.rays()[nearest];
             let passing = self.seen[last].hull.pass(ray);
-            self.matches.push(Match { ray, solid: last, passing });
+            self.matches.push(Match::new(ray, last, passing));
         }
         Ok(())
     }
@@ -136,14 +149,14 @@ fn closest(seen: &[Seen], ray: DVec3, background: Option<DVec2>, hint: usize) ->
         let turned = background.map_or(0.0, |out| 1.0 + out.dot(passing.normal.truncate()));
         passing.distance + 0.5 * FACING * turned
     };
-    let mut best = Match { ray, solid: hint, passing: seen[hint].hull.pass(ray) };
+    let mut best = Match::new(ray, hint, seen[hint].hull.pass(ray));
     let mut least = cost(&best.passing);
     for (solid, candidate) in seen.iter().enumerate() {
         if solid != hint && candidate.bound.least(place) < least {
             let passing = candidate.hull.pass(ray);
             let cost = cost(&passing);
             if cost < least {
-                (best, least) = (Match { ray, solid, passing }, cost);
+                (best, least) = (Match::new(ray, solid, passing), cost);
             }
         }
     }

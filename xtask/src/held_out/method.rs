@@ -6,7 +6,7 @@ use faer::{Mat, MatRef};
 use phalanx::{Preset, Regressor};
 use phalanx_rvm::{KernelRidge, Model, Nystrom, Width};
 
-use super::presets;
+use super::presets::Answer;
 use crate::described::Samples;
 use crate::metrics::mean_predictor;
 use crate::neighbours::nearest_mean;
@@ -36,6 +36,10 @@ pub(crate) enum Method {
     Preset,
     /// The best preset, whatever the training set.
     Best,
+    /// The default preset's estimates refined, with the mean hand.
+    Refined,
+    /// The same, with the hand calibrated from 20 other frames.
+    RefinedOwnHand,
 }
 
 /// Something that estimates poses from descriptors.
@@ -51,11 +55,13 @@ impl Method {
         [Self::Mean, Self::Lin, Self::Gauss, Self::Both, Self::Forward, Self::Kernel, Self::Knn5];
 
     /// The preset, of those that are one: they learn from scenes of their own.
-    pub(crate) fn preset(self) -> Option<Preset> {
+    pub(crate) fn preset(self) -> Option<(Preset, Answer)> {
         match self {
-            Self::Fast => Some(Preset::Fast),
-            Self::Preset => Some(Preset::Balanced),
-            Self::Best => Some(Preset::Best),
+            Self::Fast => Some((Preset::Fast, Answer::Estimate)),
+            Self::Preset => Some((Preset::Balanced, Answer::Estimate)),
+            Self::Best => Some((Preset::Best, Answer::Estimate)),
+            Self::Refined => Some((Preset::Balanced, Answer::Refined)),
+            Self::RefinedOwnHand => Some((Preset::Balanced, Answer::RefinedOwnHand)),
             _ => None,
         }
     }
@@ -69,9 +75,11 @@ impl Method {
             Self::Forward => "forward",
             Self::Kernel => "kernel",
             Self::Knn5 => "knn5",
-            Self::Fast => presets::name(Preset::Fast),
-            Self::Preset => presets::name(Preset::Balanced),
-            Self::Best => presets::name(Preset::Best),
+            Self::Fast => "fast",
+            Self::Preset => "preset",
+            Self::Best => "best",
+            Self::Refined => "refined",
+            Self::RefinedOwnHand => "refined_own_hand",
         }
     }
 
@@ -92,7 +100,7 @@ impl Method {
                 let (x, y) = (samples.x.clone(), samples.y.clone());
                 Ok(Predictor::Nearest(Samples { x, y }))
             }
-            Self::Fast | Self::Preset | Self::Best => {
+            Self::Fast | Self::Preset | Self::Best | Self::Refined | Self::RefinedOwnHand => {
                 bail!("a preset does not learn from the paper's descriptors")
             }
         }

@@ -7,6 +7,7 @@ mod masks;
 pub(crate) mod method;
 mod presets;
 pub(crate) mod print;
+mod refined;
 pub(crate) mod row;
 mod timing;
 
@@ -15,7 +16,7 @@ use std::process::ExitCode;
 
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
-use phalanx::{OrientationRule, Preset, Progress, Scenes};
+use phalanx::{OrientationRule, Progress, Scenes};
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 use serde::Serialize;
@@ -148,7 +149,7 @@ fn rows(
     let motion = motion.map_or_else(Vec::new, |table| table.poses);
     let (sets, tests) = (training_sets(arguments, ground)?, tests(arguments)?);
     let methods = methods(arguments);
-    let presets: Vec<Preset> = methods.iter().filter_map(|method| method.preset()).collect();
+    let presets: Vec<_> = methods.iter().filter_map(|method| method.preset()).collect();
     let methods = methods.into_iter().filter(|method| method.preset().is_none()).collect();
     let protocol = Protocol { ground, methods, tests, motion: &motion };
     let (learners, mut rows) = protocol.run(&sets, progress)?;

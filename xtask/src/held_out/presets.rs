@@ -2,19 +2,38 @@
 
 use anyhow::{Context, Result};
 use faer::Mat;
-use phalanx::{Estimator, Preset, Progress, SceneDescriber, Scenes, Shard, Workspace, targets};
+use phalanx::{
+    Estimator, Preset, Progress, Refiner, SceneDescriber, Scenes, Shard, Workspace, targets,
+};
 use phalanx_hand::{Dof, Pose};
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
 use super::Ground;
 use super::errors::Truth;
+use super::refined;
 use super::row::{Outcome, Row};
-use crate::sets::{Augment, Set, random};
+use crate::sets::{self, Augment, Set, random};
 use crate::table1::single_view;
+
+/// How a learnt preset answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// By its estimate.
+    Estimate,
+    /// By that refined, with the hand as given.
+    Refined,
+    /// By that refined, with the hand calibrated from other frames.
+    RefinedOwnHand,
+}
+
+/// Scenes from which it is learnt how estimates err, where they are refined.
+const ERROR_SCENES: usize = 4000;
 
 /// A preset learnt from some of the cameras.
 pub(crate) struct Learnt {
+    answers: Vec<Answer>,
+    refiner: Refiner,
     preset: Preset,
     samples: usize,
     /// The cameras' numbers in the whole rig.
@@ -25,24 +44,31 @@ pub(crate) struct Learnt {
 }
 
 /// The name in tables and JSON.
-pub(crate) fn name(preset: Preset) -> &'static str {
-    match preset {
-        Preset::Fast => "fast",
-        Preset::Balanced => "preset",
-        Preset::Best => "best",
+pub(crate) fn name(preset: Preset, answer: Answer) -> &'static str {
+    match (answer, preset) {
+        (Answer::Refined, _) => "refined",
+        (Answer::RefinedOwnHand, _) => "refined_own_hand",
+        (Answer::Estimate, Preset::Fast) => "fast",
+        (Answer::Estimate, Preset::Balanced) => "preset",
+        (Answer::Estimate, Preset::Best) => "best",
     }
 }
 
 /// Learns presets through one view (the top), two next to each other and all.
 pub(crate) fn learn(
-    presets: &[Preset],
+    asked: &[(Preset, Answer)],
     ground: &Ground,
     progress: &dyn Progress,
 ) -> Result<Vec<Learnt>> {
-    let work = presets
-        .iter()
-        .flat_map(|&preset| views(ground).into_iter().map(move |views| (preset, views)));
-    work.map(|(preset, views)| Learnt::new(preset, views, ground, progress)).collect()
+    let mut learnt = Vec::new();
+    for preset in Preset::ALL {
+        let answers: Vec<Answer> =
+            asked.iter().filter(|(asked, _)| *asked == preset).map(|&(_, answer)| answer).collect();
+        for views in views(ground).into_iter().filter(|_| !answers.is_empty()) {
+            learnt.push(Learnt::new(preset, answers.clone(), views, ground, progress)?);
+        }
+    }
+    Ok(learnt)
 }
 
 fn views(ground: &Ground) -> Vec<Vec<usize>> {
@@ -56,6 +82,7 @@ fn views(ground: &Ground) -> Vec<Vec<usize>> {
 impl Learnt {
     fn new(
         preset: Preset,
+        answers: Vec<Answer>,
         views: Vec<usize>,
         ground: &Ground,
         progress: &dyn Progress,
@@ -68,23 +95,56 @@ impl Learnt {
         let part = training.shard(&rig, &ground.hand, &set, Shard::WHOLE, progress)?;
         let samples = set.count() - part.left_out();
         progress.begin("fit the regressor", 1);
-        let estimator = part.finish()?;
+        let mut estimator = part.finish()?;
         progress.step();
+        if answers.iter().any(|answer| *answer != Answer::Estimate) {
+            let fresh = sets::fresh(&rig, &ground.hand, ERROR_SCENES, Augment::Yes);
+            estimator = estimator.learn_errors(&fresh, progress)?;
+        }
         let mean = Dof::ALL.map(|dof| {
             set.poses.iter().map(|pose| pose[dof]).sum::<f64>() / set.poses.len() as f64
         });
-        Ok(Self { preset, samples, views, estimator, mean: Pose(mean) })
+        let refiner = refined::refiner(&estimator, ground)?;
+        Ok(Self { answers, refiner, preset, samples, views, estimator, mean: Pose(mean) })
     }
 
-    fn estimate(&self, silhouettes: &[Silhouette], workspace: &mut Workspace) -> Result<Pose> {
+    /// One pose for each answer; `own` is the refiner with the hand calibrated.
+    fn poses(
+        &self,
+        silhouettes: &[Silhouette],
+        own: Option<&Refiner>,
+        workspace: &mut Workspace,
+    ) -> Result<Vec<Pose>> {
         let seen: Vec<Silhouette> =
             self.views.iter().map(|&view| silhouettes[view].clone()).collect();
-        Ok(self.estimator.estimate_silhouettes(&seen, workspace)?.pose)
+        let answers = self.answers.iter().map(|answer| match answer {
+            Answer::Estimate => Ok(self.estimator.estimate_silhouettes(&seen, workspace)?.pose),
+            Answer::Refined => refined::refine(&self.estimator, &self.refiner, &seen, workspace),
+            Answer::RefinedOwnHand => {
+                let refiner = own.unwrap_or(&self.refiner);
+                refined::refine(&self.estimator, refiner, &seen, workspace)
+            }
+        });
+        answers.collect()
+    }
+
+    /// Refiners for the hands of a test, if its answers need any.
+    fn own_hands(
+        &self,
+        set: &Set<'_>,
+        ground: &Ground,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Refiner>> {
+        if !self.answers.contains(&Answer::RefinedOwnHand) {
+            return Ok(Vec::new());
+        }
+        refined::own_hands(&self.estimator, &self.refiner, &self.views, set, ground, progress)
     }
 
     fn row(
         &self,
         test: &'static str,
+        answer: Answer,
         estimates: &[Pose],
         truth: &Truth,
         ground: &Ground,
@@ -94,7 +154,7 @@ impl Learnt {
         let outcome = Outcome {
             train: "random_augmented",
             train_samples: self.samples,
-            method: name(self.preset),
+            method: name(self.preset, answer),
             views: self.views.len(),
             kept_samples: self.estimator.regression().kept_samples(),
         };
@@ -109,6 +169,8 @@ pub(crate) fn test(
     ground: &Ground,
     progress: &dyn Progress,
 ) -> Result<Vec<Row>> {
+    let own = learnt.iter().map(|learnt| learnt.own_hands(set, ground, progress));
+    let own = own.collect::<Result<Vec<_>>>()?;
     let describer = SceneDescriber::new(&ground.rig, ground.rule)?;
     progress.begin(&format!("see {}", set.name), set.count());
     let estimates = |(describer, workspace): &mut (SceneDescriber, Workspace), number: usize| {
@@ -116,7 +178,10 @@ pub(crate) fn test(
         let seen = describer.silhouettes(&scene).ok().map(|seen| seen.cloned().collect());
         progress.step();
         let seen: Vec<Silhouette> = seen?;
-        let each = learnt.iter().map(|learnt| learnt.estimate(&seen, workspace));
+        let each = learnt
+            .iter()
+            .zip(&own)
+            .map(|(learnt, own)| learnt.poses(&seen, own.get(number % set.hands()), workspace));
         Some((scene, each.collect::<Result<Vec<_>>>().ok()?))
     };
     let memory = || (describer.clone(), Workspace::default());
@@ -130,18 +195,22 @@ pub(crate) fn test(
     rows(set.name, learnt, estimated.into_iter().map(|(_, each)| each), &truth, ground)
 }
 
-/// The rows of estimates, of each sample one by every preset.
+/// The rows of estimates, of each sample one by every answer of every preset.
 pub(crate) fn rows(
     test: &'static str,
     learnt: &[Learnt],
-    estimates: impl Iterator<Item = Vec<Pose>>,
+    estimates: impl Iterator<Item = Vec<Vec<Pose>>>,
     truth: &Truth,
     ground: &Ground,
 ) -> Result<Vec<Row>> {
-    let estimates: Vec<Vec<Pose>> = estimates.collect();
-    let of = |(number, learnt): (usize, &Learnt)| {
-        let own: Vec<Pose> = estimates.iter().map(|each| each[number]).collect();
-        learnt.row(test, &own, truth, ground).with_context(|| name(learnt.preset))
-    };
-    learnt.iter().enumerate().map(of).collect()
+    let estimates: Vec<Vec<Vec<Pose>>> = estimates.collect();
+    let mut rows = Vec::new();
+    for (number, learnt) in learnt.iter().enumerate() {
+        for (k, &answer) in learnt.answers.iter().enumerate() {
+            let own: Vec<Pose> = estimates.iter().map(|each| each[number][k]).collect();
+            let row = learnt.row(test, answer, &own, truth, ground);
+            rows.push(row.with_context(|| name(learnt.preset, answer))?);
+        }
+    }
+    Ok(rows)
 }

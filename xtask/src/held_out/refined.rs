@@ -1,0 +1,78 @@
+//! The default preset's estimates, refined: with the hand as given, and after calibrating it.
+
+use anyhow::Result;
+use phalanx::{Estimator, Progress, Refiner, SceneDescriber, Scenes, Workspace};
+use phalanx_hand::Pose;
+use phalanx_refine::{Calibration, Doubt, HandDoubt, Refinement};
+use phalanx_segmentation::Silhouette;
+use rayon::prelude::*;
+
+use super::Ground;
+use crate::sets::{self, Augment, Set};
+
+/// Poses that tell how angles go together.
+const POSTURES: usize = 2000;
+/// Hypotheses about each estimate.
+const HYPOTHESES: usize = 5;
+/// Frames from which each hand is calibrated.
+const CALIBRATION_FRAMES: usize = 20;
+
+/// How far a calibrated hand may still be from the true one.
+const CALIBRATED: HandDoubt = HandDoubt { size: 0.005, each: 0.02 };
+
+/// Refines with the mean hand, which may be doubted as the cameras may.
+pub(crate) fn refiner(estimator: &Estimator, ground: &Ground) -> Result<Refiner> {
+    let postures = sets::fresh(estimator.rig(), &ground.hand, POSTURES, Augment::No).poses;
+    let refinement = Refinement { doubt: Some(Doubt::default()), ..Refinement::default() };
+    Ok(Refiner::new(estimator.rig(), &ground.hand, &postures, refinement)?)
+}
+
+/// The refined pose of one frame.
+pub(crate) fn refine(
+    estimator: &Estimator,
+    refiner: &Refiner,
+    silhouettes: &[Silhouette],
+    workspace: &mut Workspace,
+) -> Result<Pose> {
+    let estimate = estimator.estimate_silhouettes(silhouettes, workspace)?;
+    let hypotheses = estimator.hypotheses(&estimate, HYPOTHESES)?;
+    Ok(refiner.refine_best(silhouettes, &estimate, &hypotheses)?[0].pose)
+}
+
+/// Calibrates each hand of a test from other frames of it; a refiner for each.
+pub(crate) fn own_hands(
+    estimator: &Estimator,
+    refiner: &Refiner,
+    views: &[usize],
+    set: &Set<'_>,
+    ground: &Ground,
+    progress: &dyn Progress,
+) -> Result<Vec<Refiner>> {
+    let others = set.other_motion();
+    let describer = SceneDescriber::new(&ground.rig, ground.rule)?;
+    let hands = set.hands();
+    progress.begin(&format!("calibrate the hands of {}", set.name), hands);
+    let calibrate = |hand: usize| -> Result<Refiner> {
+        let (mut describer, mut workspace) = (describer.clone(), Workspace::default());
+        let rounds = others.count() / hands / CALIBRATION_FRAMES;
+        let mut frames = Vec::with_capacity(CALIBRATION_FRAMES);
+        for k in 0..CALIBRATION_FRAMES {
+            let scene = others.scene(hand + hands * rounds * k);
+            let all: Vec<Silhouette> = describer.silhouettes(&scene)?.cloned().collect();
+            let seen: Vec<Silhouette> = views.iter().map(|&view| all[view].clone()).collect();
+            let estimate = estimator.estimate_silhouettes(&seen, &mut workspace)?;
+            frames.push(refiner.frame(&seen, &estimate)?);
+        }
+        let doubt = Doubt::default();
+        // In these tests cameras stand elsewhere in every frame.
+        let calibration = Calibration { cameras: doubt.cameras, ..Calibration::default() };
+        let own = refiner.calibrate(&calibration, &frames)?.hand;
+        progress.step();
+        let refinement = Refinement {
+            doubt: Some(Doubt { hand: Some(CALIBRATED), ..doubt }),
+            ..refiner.refinement().clone()
+        };
+        Ok(refiner.with_hand(&own)?.with_refinement(refinement))
+    };
+    (0..hands).into_par_iter().map(calibrate).collect()
+}
