@@ -51,19 +51,19 @@ struct Errors {
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let (rig, hand) = (files::rig(arguments.rig.as_deref())?, files::hand(None)?);
     let bar = progress::Bar::new();
-    let mut report = String::from(
+    let mut report = vec![String::from(
         "Mean, median and 95th percentile of what is wrong before refinement and after.\n\
          views           found  position mm          arm deg              orientation deg      theta_z deg          digits deg\n",
-    );
+    )];
     for views in view_choices(&rig) {
         let seen = rig.select(&views)?;
         let samples = arguments.samples.unwrap_or(PRESET.scenes());
         let learnt = learn(&seen, &hand, samples, &bar)?;
         let test = Test::Placed.set(&seen, &hand, &[]);
-        report += &rows(&learnt, &test, &bar)?;
+        report.push(rows(&learnt, &test, &bar)?);
     }
     drop(bar);
-    files::print(&report)
+    files::print(&report.concat())
 }
 
 /// All cameras, the first two, and one alone.

@@ -21,12 +21,12 @@ pub(super) fn read(folder: &Path, rig: &Rig) -> Result<Vec<Frame>> {
         names.push(entry?.file_name().to_string_lossy().into_owned());
     }
     names.sort();
-    names.into_iter().map(|name| frame(folder, rig, name)).collect()
+    names.iter().map(|name| frame(folder, rig, name)).collect()
 }
 
-fn frame(folder: &Path, rig: &Rig, file: String) -> Result<Frame> {
+fn frame(folder: &Path, rig: &Rig, file: &str) -> Result<Frame> {
     let image = |camera: &phalanx_camera::Camera| -> Result<RgbImage> {
-        let path = folder.join(&camera.name).join(&file);
+        let path = folder.join(&camera.name).join(file);
         let image = image::open(&path).with_context(|| path.display().to_string())?.to_rgb8();
         let expected = (camera.intrinsics.width, camera.intrinsics.height);
         let found = image.dimensions();
@@ -34,6 +34,6 @@ fn frame(folder: &Path, rig: &Rig, file: String) -> Result<Frame> {
         Ok(image)
     };
     let images = rig.cameras.iter().map(image).collect::<Result<_>>()?;
-    let name = Path::new(&file).file_stem().map_or(file.clone(), |s| s.to_string_lossy().into());
-    Ok(Frame { name, images })
+    let name = Path::new(file).file_stem().map_or(file.into(), |stem| stem.to_string_lossy());
+    Ok(Frame { name: name.into_owned(), images })
 }

@@ -13,7 +13,8 @@ use glam::DVec3;
 use image::{GrayImage, RgbImage};
 use phalanx::{Progress, Window, WindowFinder, Workspace};
 use phalanx_camera::{Rig, Volume, cameras_from_opencv_json, triangulate};
-use phalanx_hand::{Dof, Pose, write_poses};
+use phalanx_hand::{Dof, HandShape, Pose, write_poses};
+use phalanx_refine::Refined;
 use phalanx_segmentation::{Silhouette, SkinModel};
 
 use crate::{files, progress, sets};
@@ -70,24 +71,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let rig = rig(&folder)?;
     let frames = frames::read(&folder, &rig)?;
     let looks = look_at(&rig, frames);
-    let mut report = String::new();
-    for look in &looks {
-        report += &line(look);
-    }
     let whole: Vec<&str> =
         looks.iter().filter(|look| is_whole(look)).map(|look| look.name.as_str()).collect();
-    report += &format!(
+    let mut report: Vec<String> = looks.iter().map(line).collect();
+    report.push(format!(
         "whole hand in both views: {} of {} frames: {}\n",
         whole.len(),
         looks.len(),
         whole.join(" ")
-    );
+    ));
     sheet::write(&arguments.out, &looks)?;
     if !arguments.windows_only {
         let bar = progress::Bar::new();
-        report += &fit(arguments, &folder, &rig, &looks, &bar)?;
+        report.extend(fit(arguments, &folder, &rig, &looks, &bar)?);
     }
-    files::print(&report)
+    files::print(&report.concat())
 }
 
 /// Estimates, calibrates and refines the frames with the whole hand in both views; what came of it.
@@ -97,7 +95,7 @@ fn fit(
     rig: &Rig,
     looks: &[Look],
     progress: &dyn Progress,
-) -> Result<String> {
+) -> Result<Vec<String>> {
     let learnt = fit::learn(rig, &files::hand(None)?, arguments.samples, progress)?;
     let (mut workspace, mut starts, mut whole) = (Workspace::default(), Vec::new(), Vec::new());
     for look in looks.iter().filter(|look| is_whole(look)) {
@@ -117,33 +115,40 @@ fn fit(
     let names: Vec<&str> = whole.iter().map(|look| look.name.as_str()).collect();
     let reference = angles::reference(folder, &names)?;
     let rest = rig.volume.rest_frame();
-    let mut report = String::new();
-    for (what, hand, fitted) in [("mean", mean, &with_mean), ("own", &own, &with_own)] {
-        let (least, reached) = fit::overlaps(fitted, GOAL);
-        report += &format!(
-            "{what} hand, {:.0} mm long: least overlap of a frame's views {least:.3} on average; \
-             at least {GOAL} in both views in {:.0} % of {} frames\n",
-            fit::length_mm(hand),
-            100.0 * reached,
-            fitted.len()
-        );
-        for (look, fit) in whole.iter().zip(fitted) {
-            let overlaps: Vec<String> =
-                fit.overlaps.iter().map(|overlap| format!("{overlap:.3}")).collect();
-            report += &format!("  {} {}\n", look.name, overlaps.join(" "));
-        }
+    let estimates: Vec<Pose> = starts.iter().map(|start| start.estimate.pose).collect();
+    let table = |what: &str, hand: &HandShape, poses: &[Pose]| {
         let of = |pose: &Pose| angles::of_joints(&hand.pose(pose, &rest).joints);
-        let started: Vec<_> = starts.iter().map(|start| of(&start.estimate.pose)).collect();
-        let refined: Vec<_> = fitted.iter().map(|fit| of(&fit.pose)).collect();
-        report += &format!("estimated, {what} hand\n{}", angles::table(&started, &reference));
-        report += &format!("refined, {what} hand\n{}", angles::table(&refined, &reference));
+        let found: Vec<_> = poses.iter().map(of).collect();
+        format!("{what}\n{}", angles::table(&found, &reference))
+    };
+    let mut report = vec![table("estimated", mean, &estimates)];
+    for (what, hand, fitted) in [("mean", mean, &with_mean), ("own", &own, &with_own)] {
+        report.push(said_of(what, hand, &names, fitted));
         let poses: Vec<Pose> = fitted.iter().map(|fit| fit.pose).collect();
+        report.push(table(&format!("refined with the {what} hand"), hand, &poses));
         let mut csv = Vec::new();
         write_poses(&mut csv, &poses, &Dof::ALL)?;
         files::write_whole(&arguments.out.join(format!("poses-{what}.csv")), &csv)?;
         sheet::write_fits(&arguments.out, what, &whole, hand, &rest, &poses)?;
     }
     Ok(report)
+}
+
+/// How much of what was seen a hand covers, frame by frame.
+fn said_of(what: &str, hand: &HandShape, names: &[&str], fitted: &[Refined]) -> String {
+    let (least, reached) = fit::overlaps(fitted, GOAL);
+    let first = format!(
+        "{what} hand, {:.0} mm long: least overlap of a frame's views {least:.3} on average; at least \
+         {GOAL} in both views in {:.0} % of {} frames\n",
+        fit::length_mm(hand),
+        100.0 * reached,
+        fitted.len()
+    );
+    let frame = |(name, fit): (&&str, &Refined)| {
+        let overlaps = fit.overlaps.iter().map(|overlap| format!("{overlap:.3}"));
+        format!("  {name} {}\n", overlaps.collect::<Vec<_>>().join(" "))
+    };
+    std::iter::once(first).chain(names.iter().zip(fitted).map(frame)).collect()
 }
 
 /// The rig of the calibration, the person opposite the first camera.
