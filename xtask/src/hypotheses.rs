@@ -105,7 +105,7 @@ fn answers(
     let fresh = sets::fresh(rig, hand, ERROR_SCENES, Augment::No);
     let estimator = estimator.learn_errors(&fresh, progress)?;
     let refiner = Refiner::new(rig, hand, &fresh.poses, Refinement::default())?;
-    let (nearest, middles) = from_neighbours(&estimator, &train, questions, progress)?;
+    let [nearest, middles] = from_neighbours(&estimator, &train, questions, progress)?;
     let found = hypotheses(&estimator, &refiner, questions, progress)?;
     let all = |which: fn(&Found) -> &Vec<Pose>| found.iter().map(which).cloned().collect();
     Ok(vec![
@@ -162,7 +162,7 @@ fn from_neighbours(
     train: &Set<'_>,
     questions: &Questions<'_>,
     progress: &dyn Progress,
-) -> Result<(Vec<Vec<Pose>>, Vec<Vec<Pose>>)> {
+) -> Result<[Vec<Vec<Pose>>; 2]> {
     let described = |set: &Set<'_>, numbers: &[usize]| -> Result<Mat<f64>> {
         progress.begin("describe", numbers.len());
         let descriptor = estimator.descriptor();
@@ -187,7 +187,7 @@ fn from_neighbours(
     let fifty: Vec<Vec<Pose>> = (0..asked.ncols()).into_par_iter().map(neighbours).collect();
     let nearest = fifty.iter().map(|poses| poses[..MOST].to_vec()).collect();
     let middles = fifty.iter().map(|poses| middles(poses)).collect::<Result<_>>()?;
-    Ok((nearest, middles))
+    Ok([nearest, middles])
 }
 
 /// The mean of some poses and principal points about it.

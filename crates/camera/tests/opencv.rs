@@ -48,13 +48,14 @@ fn a_volume_lies_where_the_axes_meet_and_makes_a_rig() {
     assert!(matches!(Volume::between(&rig.cameras[..1], 300.0), Err(Error::TooFewRays { .. })));
 }
 
+type Check = fn(&Error) -> bool;
+
 #[test]
 fn calibrations_that_contradict_themselves_are_refused_by_name() {
     for unit_mm in [0.0, -50.0, f64::NAN, f64::INFINITY] {
         let error = cameras_from_opencv_json(CALIBRATION, unit_mm).unwrap_err();
         assert!(matches!(error, Error::Unit { .. }), "{error}");
     }
-    type Check = fn(&Error) -> bool;
     let cases: [(&str, &str, Check); 11] = [
         ("[600, 0, 319.5]", "[600, 2, 319.5]", |e| matches!(e, Error::CameraMatrix { .. })),
         ("[0, 0, 1]", "[0, 0, 2]", |e| matches!(e, Error::CameraMatrix { .. })),

@@ -6,9 +6,11 @@ use anyhow::{Result, bail};
 use clap::Args;
 use image::{DynamicImage, RgbImage, imageops};
 use phalanx::{
-    Estimate, Estimator, Picture, Segmenter, Workspace, draw_overlay, draw_silhouette,
+    Estimate, Estimator, Picture, Refiner, Segmenter, Workspace, draw_overlay, draw_silhouette,
     working_window,
 };
+use phalanx_hand::HandShape;
+use phalanx_refine::{Doubt, Refinement};
 use phalanx_segmentation::{Silhouette, SkinModel};
 
 use crate::input::{self, Crop};
@@ -25,6 +27,12 @@ pub(crate) struct Arguments {
     /// The pictures are silhouettes: brighter than 127 is hand.
     #[arg(long)]
     mask: bool,
+    /// Refine the estimate by drawing the hand and comparing.
+    #[arg(long)]
+    refine: bool,
+    /// The person's hand, as `calibrate-hand` writes it, to refine with; else the model's.
+    #[arg(long, value_name = "FILE.toml", requires = "refine")]
+    hand: Option<PathBuf>,
     /// Look at this window of every picture only, px.
     #[arg(long, value_name = "X,Y,W,H")]
     crop: Option<Crop>,
@@ -51,8 +59,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         of_photographs(&estimator, &pictures, &mut workspace)?
     };
     let mut doubts = output::doubts(&estimator, &estimate);
+    let hand = arguments.hand.as_deref().map(input::hand).transpose()?;
+    let hand = hand.unwrap_or_else(|| estimator.hand().clone());
+    let estimate = if arguments.refine {
+        refine(&estimator, &hand, estimate, &workspace, &mut doubts)?
+    } else {
+        estimate
+    };
     if let Some(path) = &arguments.overlay {
-        let overlay = overlay(&estimator, &estimate, &pictures, &workspace, &mut doubts)?;
+        let overlay = overlay(&estimator, &hand, &estimate, &pictures, &workspace, &mut doubts)?;
         output::write_png(path, &overlay)?;
     }
     for doubt in doubts {
@@ -64,6 +79,41 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         output::print(&output::text(&estimate))
     }
 }
+
+/// The refined estimate. That it did not settle, or that borders stay apart, is a doubt.
+fn refine(
+    estimator: &Estimator,
+    hand: &HandShape,
+    estimate: Estimate,
+    workspace: &Workspace,
+    doubts: &mut Vec<String>,
+) -> Result<Estimate> {
+    let refinement = Refinement { doubt: Some(Doubt::default()), ..Refinement::default() };
+    let refiner = Refiner::for_estimator(estimator, refinement)?.with_hand(hand)?;
+    let silhouettes = workspace.silhouettes();
+    let hypotheses = match estimator.errors() {
+        Some(_) => estimator.hypotheses(&estimate, HYPOTHESES)?,
+        None => Vec::new(),
+    };
+    let refined = refiner.refine_best(silhouettes, &estimate, &hypotheses)?.swap_remove(0);
+    if !refined.converged {
+        doubts.push("the refinement stopped before it settled".to_owned());
+    }
+    for (camera, overlap) in estimator.rig().cameras.iter().zip(&refined.overlaps) {
+        if *overlap < GOOD_OVERLAP {
+            let camera = &camera.name;
+            doubts.push(format!(
+                "camera '{camera}': the refined hand overlaps its silhouette by {overlap:.2} only"
+            ));
+        }
+    }
+    Ok(refiner.refined_estimate(estimate, &refined)?)
+}
+
+/// Hypotheses about an estimate that are refined where one is not enough.
+const HYPOTHESES: usize = 5;
+/// Overlap (intersection over union) below which a refined hand is doubtful.
+const GOOD_OVERLAP: f64 = 0.8;
 
 fn is_png(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
@@ -104,6 +154,7 @@ fn of_photographs(
 /// drawn is a doubt.
 fn overlay(
     estimator: &Estimator,
+    hand: &HandShape,
     estimate: &Estimate,
     pictures: &[DynamicImage],
     workspace: &Workspace,
@@ -112,7 +163,7 @@ fn overlay(
     let mut panels = Vec::new();
     for (view, camera) in estimator.rig().cameras.iter().enumerate() {
         let rest = estimator.rig().volume.rest_frame();
-        let drawn = draw_silhouette(camera, estimator.hand(), &estimate.pose, &rest)?;
+        let drawn = draw_silhouette(camera, hand, &estimate.pose, &rest)?;
         let estimated = Silhouette::from_mask(&drawn);
         if let Err(reason) = &estimated {
             let camera = &camera.name;

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use anyhow::{Context, Result, anyhow, bail};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, ImageResult, Limits};
 use phalanx::Estimator;
+use phalanx_hand::HandShape;
 
 /// The longest side of a picture that is decoded, px.
 const MOST_PIXELS_ASIDE: u32 = 16_384;
@@ -55,6 +56,13 @@ impl Crop {
 pub(crate) fn model(path: &Path) -> Result<Estimator> {
     let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
     Estimator::from_bytes(&bytes).with_context(|| path.display().to_string())
+}
+
+/// Reads a hand file.
+pub(crate) fn hand(path: &Path) -> Result<HandShape> {
+    let name = || path.display().to_string();
+    let text = std::fs::read_to_string(path).with_context(name)?;
+    HandShape::from_toml(&text).with_context(name)
 }
 
 /// Reads a picture, and of it the window if one is given.

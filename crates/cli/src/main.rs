@@ -1,5 +1,6 @@
 //! The `phalanx` program.
 
+mod calibrate_hand;
 mod estimate;
 mod import_calibration;
 mod input;
@@ -23,6 +24,8 @@ struct Arguments {
 enum Command {
     /// Estimate the pose of a hand from one picture per camera.
     Estimate(estimate::Arguments),
+    /// Fit the proportions of a person's hand to pictures of it.
+    CalibrateHand(calibrate_hand::Arguments),
     /// Make a rig file of a calibration in OpenCV's conventions.
     ImportCalibration(import_calibration::Arguments),
 }
@@ -30,6 +33,7 @@ enum Command {
 fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Estimate(arguments) => estimate::run(&arguments),
+        Command::CalibrateHand(arguments) => calibrate_hand::run(&arguments),
         Command::ImportCalibration(arguments) => import_calibration::run(&arguments),
     };
     match done {

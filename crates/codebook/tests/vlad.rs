@@ -23,9 +23,9 @@ fn slow_code(vlad: &Vlad, samples: &[f32]) -> Vec<f64> {
     let mut sums = vec![0.0; vlad.dim()];
     for sample in samples.chunks_exact(DIM) {
         let nearest = vlad.codebook.nearest(sample).expect("a histogram").centre;
-        for bin in 0..DIM {
+        for (bin, value) in sample.iter().enumerate() {
             let at = nearest * DIM + bin;
-            sums[at] += f64::from(sample[bin]) - f64::from(vlad.codebook.centres()[at]);
+            sums[at] += f64::from(*value) - f64::from(vlad.codebook.centres()[at]);
         }
     }
     let roots: Vec<f64> = sums.iter().map(|sum| sum.signum() * sum.abs().sqrt()).collect();

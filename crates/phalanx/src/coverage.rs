@@ -38,7 +38,7 @@ mod tests {
 
     #[test]
     fn each_cell_tells_its_share() {
-        let hand = |x: u32, y: u32| x < 60 && (y < 45 || x % 5 == 0);
+        let hand = |x: u32, y: u32| x < 60 && (y < 45 || x.is_multiple_of(5));
         let mask = GrayImage::from_fn(120, 90, |x, y| Luma([if hand(x, y) { 255 } else { 0 }]));
         let mut cells = vec![f64::NAN; COVERAGE];
         coverage_into(&mask, &mut cells);

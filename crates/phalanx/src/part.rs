@@ -89,7 +89,7 @@ impl Training {
                 continue;
             }
             let y = targets_of(scenes, &kept);
-            part.basis.add(&mut part.sums, &columns, x, &y)?;
+            part.basis.add(&mut part.sums, &columns, &x, &y)?;
         }
         Ok(part)
     }
@@ -189,7 +189,13 @@ impl Basis {
     }
 
     /// Adds scenes' descriptors and poses to the sums.
-    fn add(&self, sums: &mut [Sums], columns: &[Columns], x: Mat<f64>, y: &Mat<f64>) -> Result<()> {
+    fn add(
+        &self,
+        sums: &mut [Sums],
+        columns: &[Columns],
+        x: &Mat<f64>,
+        y: &Mat<f64>,
+    ) -> Result<()> {
         let Some(metric) = &self.metric else {
             return Ok(sums[0].add(&columns[0], x.as_ref(), y.as_ref())?);
         };

@@ -2,13 +2,13 @@
 
 use glam::DAffine3;
 use phalanx_camera::{Camera, Rig};
-use phalanx_hand::{Dof, HandShape, Pose};
+use phalanx_hand::{Dof, HandShape, Pose, coupled_pose};
 use phalanx_refine::{
     Calibrated, Calibration, CalibrationFrame, Evidence, PosePrior, Refined, Refinement,
 };
 use phalanx_segmentation::Silhouette;
 
-use crate::{Error, Estimate, Hypothesis, Result, working_camera};
+use crate::{Error, Estimate, Estimator, Hypothesis, ItemRandom, Result, working_camera};
 
 /// Fits the hand to the silhouettes that it was estimated from.
 #[derive(Debug, Clone)]
@@ -41,6 +41,21 @@ impl Refiner {
             postures: PosePrior::of_poses(poses)?,
             refinement,
         })
+    }
+
+    /// For an estimator's rig and hand; angles go together as in the coupled prior
+    /// ([`phalanx_hand::coupled_pose`]).
+    ///
+    /// # Errors
+    /// As of [`new`](Self::new).
+    pub fn for_estimator(estimator: &Estimator, refinement: Refinement) -> Result<Self> {
+        const POSTURES: u64 = 2000;
+        let pose = |item| {
+            let mut random = ItemRandom::new(0, item);
+            coupled_pose(|| random.uniform())
+        };
+        let postures: Vec<Pose> = (0..POSTURES).map(pose).collect();
+        Self::new(estimator.rig(), estimator.hand(), &postures, refinement)
     }
 
     /// The same for another hand, such as a calibrated one.
@@ -120,6 +135,21 @@ impl Refiner {
         frames: &[CalibrationFrame],
     ) -> Result<Calibrated> {
         Ok(calibration.run(&self.hand, &self.rest, frames)?)
+    }
+
+    /// An estimate after refinement: the pose, its deviations and the joints.
+    ///
+    /// # Errors
+    /// As of [`prior`](Self::prior).
+    pub fn refined_estimate(&self, estimate: Estimate, refined: &Refined) -> Result<Estimate> {
+        let prior = self.prior(&estimate.pose, &estimate.std)?;
+        let mut std = [0.0; Dof::COUNT];
+        let diagonal = refined.covariance.iter().step_by(prior.dofs().len() + 1);
+        for (dof, variance) in prior.dofs().iter().zip(diagonal) {
+            std[dof.index()] = variance.max(0.0).sqrt();
+        }
+        let joints = self.hand.pose(&refined.pose, &self.rest).joints;
+        Ok(Estimate { pose: refined.pose, std, joints, ..estimate })
     }
 
     /// Refines an estimate and, where that leaves borders apart or there is one view alone, which

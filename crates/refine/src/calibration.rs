@@ -106,7 +106,7 @@ impl Calibration {
         };
         let views = frames.iter().map(|frame| frame.evidence.iter().map(View::new).collect());
         let mut views: Vec<Vec<View>> = views.collect::<Result<_>>()?;
-        let outcome = self.refinement.from_level(1, &problem, start, &mut views)?;
+        let outcome = self.refinement.descend_from(1, &problem, start, &mut views)?;
         let overlaps = overlaps(&problem, &outcome.state, self.refinement.finest(), &mut views)?;
         let shared = &outcome.state.shared;
         let camera = |(k, evidence): (usize, &Evidence)| {

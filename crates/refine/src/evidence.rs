@@ -185,8 +185,9 @@ fn nearest_cracks(cracks: &[DVec2], (width, height): (u32, u32)) -> Vec<u32> {
         for x in 0..w {
             let pixel = y * w + x;
             if y > 0 {
-                for from in [x.checked_sub(1), Some(x), (x + 1 < w).then_some(x + 1)] {
-                    from.into_iter().for_each(|from| take(pixel, pixel - w - x + from));
+                let beside = [x.checked_sub(1), Some(x), (x + 1 < w).then_some(x + 1)];
+                for from in beside.into_iter().flatten() {
+                    take(pixel, pixel - w - x + from);
                 }
             }
             if x > 0 {
@@ -198,8 +199,9 @@ fn nearest_cracks(cracks: &[DVec2], (width, height): (u32, u32)) -> Vec<u32> {
     for y in (0..h - 1).rev() {
         for x in (0..w).rev() {
             let pixel = y * w + x;
-            for from in [x.checked_sub(1), Some(x), (x + 1 < w).then_some(x + 1)] {
-                from.into_iter().for_each(|from| take(pixel, pixel + w - x + from));
+            let beside = [x.checked_sub(1), Some(x), (x + 1 < w).then_some(x + 1)];
+            for from in beside.into_iter().flatten() {
+                take(pixel, pixel + w - x + from);
             }
             if x + 1 < w {
                 take(pixel, pixel + 1);

@@ -89,46 +89,41 @@ impl PosePrior {
         Self::correlated(mean, &dofs, &covariance)
     }
 
-    /// What both say, as independent witnesses: the product of the two Gaussians. A number that
-    /// either knows exactly is known.
+    /// What both say, as independent witnesses: the product of the two Gaussians over the numbers
+    /// that this one leaves open. Of those that the other does not leave open it says nothing.
     ///
     /// # Errors
     /// Deviations so far apart that the product has no covariance to working precision.
     pub fn and(&self, other: &Self) -> Result<Self> {
-        let dofs: Vec<Dof> =
-            self.dofs.iter().copied().filter(|dof| other.dofs.contains(dof)).collect();
-        let count = dofs.len();
+        let count = self.dofs.len();
         let mut precision = Mat::<f64>::zeros(count, count);
         let mut pull = Mat::<f64>::zeros(count, 1);
         for witness in [self, other] {
-            let slot = |dof: &Dof| witness.dofs.iter().position(|own| own == dof);
-            let slots: Vec<usize> = dofs.iter().filter_map(slot).collect();
-            let all = witness.dofs.len();
-            for (j, &column) in slots.iter().enumerate() {
-                for (i, &row) in slots.iter().enumerate() {
-                    let known = witness.precision[column * all + row];
-                    precision[(i, j)] += known;
-                    pull[(i, 0)] += known * witness.mean[dofs[j]];
+            let slot = |dof: &Dof| self.dofs.iter().position(|own| own == dof);
+            let slots: Vec<Option<usize>> = witness.dofs.iter().map(slot).collect();
+            let columns = witness.precision.chunks_exact(witness.dofs.len().max(1));
+            for ((column, &dof), &j) in columns.zip(&witness.dofs).zip(&slots) {
+                for (&known, &i) in column.iter().zip(&slots) {
+                    if let (Some(i), Some(j)) = (i, j) {
+                        precision[(i, j)] += known;
+                        pull[(i, 0)] += known * witness.mean[dof];
+                    }
                 }
             }
         }
         let factor = precision.llt(Side::Lower).map_err(|_| Error::Precision {
             reason: "of the two is not positive definite".to_owned(),
         })?;
-        let at = factor.solve(&pull);
-        let covariance = factor.inverse();
+        let (at, covariance) = (factor.solve(&pull), factor.inverse());
         let mut mean = self.mean;
-        for dof in self.dofs.iter().filter(|dof| !other.dofs.contains(dof)) {
-            mean[*dof] = other.mean[*dof];
-        }
-        for (k, &dof) in dofs.iter().enumerate() {
+        for (k, &dof) in self.dofs.iter().enumerate() {
             mean[dof] = at[(k, 0)];
         }
         let flat = |matrix: &Mat<f64>| -> Vec<f64> {
             (0..count * count).map(|k| matrix[(k % count, k / count)]).collect()
         };
         let (covariance, precision) = (flat(&covariance), flat(&precision));
-        Self { mean, dofs, covariance, precision }.checked()
+        Self { mean, dofs: self.dofs.clone(), covariance, precision }.checked()
     }
 
     fn checked(self) -> Result<Self> {

@@ -44,6 +44,7 @@ pub struct Doubt {
 }
 
 /// What is tried in other postures.
+#[derive(Clone, Copy)]
 enum Tries {
     Digits,
     Pairs,
@@ -156,15 +157,15 @@ impl Refinement {
                 shared: problem.shared(),
             };
             let steps = best.steps;
-            best = self.from_level(1, &problem, state, &mut views)?;
+            best = self.descend_from(1, &problem, state, &mut views)?;
             best.steps += steps;
         }
         for _ in 0..self.retries {
             if best.border_px(self.noise) <= self.content {
                 break;
             }
-            let state = self.searched(&problem, &best.state, Tries::Pairs, &mut views)?;
-            let other = self.from_level(1, &problem, state, &mut views)?;
+            let state = searched(&problem, &best.state, Tries::Pairs, &mut views)?;
+            let other = self.descend_from(1, &problem, state, &mut views)?;
             if other.energy >= best.energy {
                 break;
             }
@@ -194,8 +195,8 @@ impl Refinement {
         let coarsest = &self.levels[0];
         let stop = Stop { steps: coarsest.steps, gain: GAIN };
         let coarse = descend(problem, start.clone(), self.measure(coarsest), stop, views)?;
-        let state = self.searched(problem, &coarse.state, Tries::Digits, views)?;
-        let mut after = self.from_level(1, problem, state, views)?;
+        let state = searched(problem, &coarse.state, Tries::Digits, views)?;
+        let mut after = self.descend_from(1, problem, state, views)?;
         after.steps += coarse.steps;
         // What was coarse may have led away from a good start.
         let stay = Stop { steps: 0, gain: GAIN };
@@ -203,42 +204,13 @@ impl Refinement {
         if before.energy > GOOD * after.energy {
             return Ok(after);
         }
-        let mut near = self.from_level(self.levels.len(), problem, before.state, views)?;
+        let mut near = self.descend_from(self.levels.len(), problem, before.state, views)?;
         near.steps += after.steps;
         Ok(if near.energy < after.energy { near } else { after })
     }
 
-    /// A state with the digits in better postures.
-    fn searched(
-        &self,
-        problem: &Problem<'_>,
-        state: &State,
-        tries: Tries,
-        views: &mut [Vec<View>],
-    ) -> Result<State> {
-        let Frame { evidence, prior } = problem.frames[0];
-        let motions: Vec<DAffine3> = (0..evidence.len())
-            .map(|view| problem.motion(&state.moments[0], &state.shared, view))
-            .collect();
-        let mut search = Search {
-            hand: &state.shared.proportions.hand(problem.given),
-            rest: problem.rest,
-            evidence,
-            prior,
-            motions: &motions,
-            views: &mut views[0],
-        };
-        let mut state = state.clone();
-        let pose = &mut state.moments[0].pose;
-        *pose = match tries {
-            Tries::Digits => search.run(pose)?,
-            Tries::Pairs => search.run_pairs(pose)?,
-        };
-        Ok(state)
-    }
-
     /// The levels from one on.
-    pub(crate) fn from_level(
+    pub(crate) fn descend_from(
         &self,
         first: usize,
         problem: &Problem<'_>,
@@ -294,4 +266,32 @@ impl Refinement {
             Some(_) => Ok(()),
         }
     }
+}
+
+/// A state with the digits in better postures.
+fn searched(
+    problem: &Problem<'_>,
+    state: &State,
+    tries: Tries,
+    views: &mut [Vec<View>],
+) -> Result<State> {
+    let Frame { evidence, prior } = problem.frames[0];
+    let motions: Vec<DAffine3> = (0..evidence.len())
+        .map(|view| problem.motion(&state.moments[0], &state.shared, view))
+        .collect();
+    let mut search = Search {
+        hand: &state.shared.proportions.hand(problem.given),
+        rest: problem.rest,
+        evidence,
+        prior,
+        motions: &motions,
+        views: &mut views[0],
+    };
+    let mut state = state.clone();
+    let pose = &mut state.moments[0].pose;
+    *pose = match tries {
+        Tries::Digits => search.run(pose)?,
+        Tries::Pairs => search.run_pairs(pose)?,
+    };
+    Ok(state)
 }

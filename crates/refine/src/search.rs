@@ -150,7 +150,7 @@ impl Search<'_> {
     }
 }
 
-#[derive(PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 enum Part {
     Digits,
     Others,

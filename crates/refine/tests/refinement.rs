@@ -154,7 +154,7 @@ fn a_prior_of_poses_knows_how_they_vary() {
     assert!(postures.dofs().contains(&Dof::ThetaZ));
     let estimate = PosePrior::independent(hand_bent_by([0.5; 5], 0.2), &[0.3; Dof::COUNT]).unwrap();
     let both = estimate.and(&postures).unwrap();
-    assert_eq!(both.dofs(), postures.dofs());
+    assert_eq!(both.dofs(), estimate.dofs());
     let (low, high) = (postures.mean()[Dof::IndexPip], estimate.mean()[Dof::IndexPip]);
     let between = both.mean()[Dof::IndexPip];
     assert!((low.min(high) - 0.02..=low.max(high) + 0.02).contains(&between));

@@ -71,7 +71,7 @@ pub(crate) struct Eigen {
 }
 
 /// Decomposes a symmetric matrix.
-pub(crate) fn eigen(a: Mat<f64>) -> Result<Eigen> {
+pub(crate) fn eigen(a: &Mat<f64>) -> Result<Eigen> {
     let n = a.nrows();
     let params = Spec::default();
     let compute = ComputeEigenvectors::Yes;

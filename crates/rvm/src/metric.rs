@@ -158,7 +158,7 @@ impl GradientMetric {
     /// The root of M, at most so many rows.
     fn directions(gradients: &[Mat<f64>], most: usize) -> Result<Mat<f64>> {
         let d = gradients.first().map_or(0, Mat::ncols);
-        let eigen = linalg::eigen(linalg::gram(stacked(gradients, d).as_ref()))?;
+        let eigen = linalg::eigen(&linalg::gram(stacked(gradients, d).as_ref()))?;
         let strongest = eigen.values.first().copied().unwrap_or(0.0);
         let strong = |&k: &usize| eigen.values[k] > 1e-12 * strongest;
         let kept: Vec<usize> = (0..most.min(d)).filter(strong).collect();

@@ -188,7 +188,9 @@ impl<'a> Whitened<'a> {
             Deviation::CrossValidated => {
                 let samples = self.equations.samples() as f64;
                 let left = (samples / (samples - 1.0 - used).max(1.0)).sqrt();
-                noise.iter_mut().for_each(|noise| *noise *= left);
+                for noise in &mut noise {
+                    *noise *= left;
+                }
                 Factor { columns: Vec::new(), packed: Vec::new() }
             }
         };

@@ -28,7 +28,7 @@ impl Principal {
         let n = x.ncols() as f64;
         let mean: Vec<f64> = x.row_iter().map(|row| row.iter().sum::<f64>() / n).collect();
         let centred = Mat::from_fn(x.ncols(), x.nrows(), |i, k| x[(k, i)] - mean[k]);
-        let eigen = linalg::eigen(linalg::gram(centred.as_ref()))?;
+        let eigen = linalg::eigen(&linalg::gram(centred.as_ref()))?;
         let strong = |&k: &usize| eigen.values[k] > 1e-12 * eigen.values[0];
         let kept: Vec<usize> = (0..components.min(x.nrows())).filter(strong).collect();
         let total: f64 = kept.iter().map(|&k| eigen.values[k] / n).sum();

@@ -37,7 +37,9 @@ impl Standardiser {
         let varying = each.varying();
         let total: f64 = each.scale.iter().map(|scale| scale * scale).sum();
         let common = (total / varying.len().max(1) as f64).sqrt();
-        varying.into_iter().for_each(|row| each.scale[row] = common);
+        for row in varying {
+            each.scale[row] = common;
+        }
         Ok(each)
     }
 

@@ -12,12 +12,14 @@ use phalanx_segmentation::Silhouette;
 use super::Ground;
 use super::errors::Truth;
 use super::learner::{Learner, joined};
+use super::presets::{self, Learnt};
 use super::row::{self, Row};
 use crate::files;
 
 /// A folder of silhouettes, camera by camera, and what they show.
 pub(crate) struct Masks {
     poses: Vec<Pose>,
+    silhouettes: Vec<Vec<Silhouette>>,
     contexts: Vec<PoseContexts>,
     /// How many frames could not be described.
     pub(crate) left_out: usize,
@@ -35,12 +37,13 @@ impl Masks {
         let table = files::poses(&path)?;
         let frames =
             table.frames.with_context(|| format!("{}: no column 'frame'", path.display()))?;
-        let (mut poses, mut contexts) = (Vec::new(), Vec::new());
+        let (mut poses, mut silhouettes, mut contexts) = (Vec::new(), Vec::new(), Vec::new());
         let mut describer = Describer::default();
         for (pose, frame) in table.poses.iter().zip(&frames) {
             match describe(folder, frame, ground, &mut describer) {
-                Ok(described) => {
+                Ok((seen, described)) => {
                     poses.push(*pose);
+                    silhouettes.push(seen);
                     contexts.push(described);
                 }
                 Err(error) => eprintln!("frame {frame} is left out: {error:#}"),
@@ -50,7 +53,7 @@ impl Masks {
             bail!("{}: none of {} frames can be described", folder.display(), frames.len());
         }
         let left_out = frames.len() - poses.len();
-        Ok(Self { poses, contexts, left_out })
+        Ok(Self { poses, silhouettes, contexts, left_out })
     }
 
     /// Every learner's every method on them.
@@ -63,21 +66,28 @@ impl Masks {
             let columns = self.contexts.iter().map(describe).collect::<Result<Vec<_>, _>>()?;
             samples.push(joined(&columns, &self.poses));
         }
+        row::rows("masks", learners, &samples, &self.truth(ground), ground)
+    }
+
+    /// Every learnt preset on them.
+    pub(crate) fn test_presets(&self, learnt: &[Learnt], ground: &Ground) -> Result<Vec<Row>> {
+        presets::test_masks(&self.silhouettes, learnt, &self.truth(ground), ground)
+    }
+
+    fn truth(&self, ground: &Ground) -> Truth {
         let scene = |pose: &Pose| Scene::nominal(&ground.rig, &ground.hand, *pose);
-        let truth = Truth::of(self.poses.iter().map(scene), ground);
-        row::rows("masks", learners, &samples, &truth, ground)
+        Truth::of(self.poses.iter().map(scene), ground)
     }
 }
 
-/// One frame's shape contexts in every camera.
+/// One frame's silhouettes and shape contexts in every camera.
 fn describe(
     folder: &Path,
     frame: &str,
     ground: &Ground,
     describer: &mut Describer,
-) -> Result<PoseContexts> {
-    let mut silhouette = Silhouette::default();
-    let view = |camera: &phalanx_camera::Camera| -> Result<Vec<f32>> {
+) -> Result<(Vec<Silhouette>, PoseContexts)> {
+    let view = |camera: &phalanx_camera::Camera| -> Result<(Silhouette, Vec<f32>)> {
         let path = folder.join(&camera.name).join(format!("{frame}.png"));
         let name = || path.display().to_string();
         let mask: GrayImage = image::open(&path).with_context(name)?.to_luma8();
@@ -91,10 +101,14 @@ fn describe(
             mask.width(),
             mask.height()
         );
+        let mut silhouette = Silhouette::default();
         describer.silhouette(Picture::Mask(&mask), &mut silhouette).with_context(name)?;
-        Ok(describer.contexts(&silhouette, ground.rule).with_context(name)?.values().to_vec())
+        let contexts = describer.contexts(&silhouette, ground.rule).with_context(name)?;
+        let contexts = contexts.values().to_vec();
+        Ok((silhouette, contexts))
     };
-    ground.rig.cameras.iter().map(view).collect()
+    let views = ground.rig.cameras.iter().map(view).collect::<Result<Vec<_>>>()?;
+    Ok(views.into_iter().unzip())
 }
 
 #[cfg(test)]

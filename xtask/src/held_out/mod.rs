@@ -157,6 +157,7 @@ fn rows(
     rows.extend(protocol.test_presets(&learnt, progress)?);
     if let Some(masks) = masks {
         rows.extend(masks.test(&learners, ground)?);
+        rows.extend(masks.test_presets(&learnt, ground)?);
     }
     if arguments.timing {
         timing::add(&mut rows, &learners, ground)?;

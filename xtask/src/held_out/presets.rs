@@ -108,6 +108,11 @@ impl Learnt {
         Ok(Self { answers, refiner, preset, samples, views, estimator, mean: Pose(mean) })
     }
 
+    /// The silhouettes of the cameras that it was learnt from, of those of all.
+    fn of_views(&self, silhouettes: &[Silhouette]) -> Vec<Silhouette> {
+        self.views.iter().map(|&view| silhouettes[view].clone()).collect()
+    }
+
     /// One pose for each answer; `own` is the refiner with the hand calibrated.
     fn poses(
         &self,
@@ -115,8 +120,7 @@ impl Learnt {
         own: Option<&Refiner>,
         workspace: &mut Workspace,
     ) -> Result<Vec<Pose>> {
-        let seen: Vec<Silhouette> =
-            self.views.iter().map(|&view| silhouettes[view].clone()).collect();
+        let seen = self.of_views(silhouettes);
         let answers = self.answers.iter().map(|answer| match answer {
             Answer::Estimate => Ok(self.estimator.estimate_silhouettes(&seen, workspace)?.pose),
             Answer::Refined => refined::refine(&self.estimator, &self.refiner, &seen, workspace),
@@ -193,6 +197,30 @@ pub(crate) fn test(
     }
     let truth = Truth::of(estimated.iter().map(|(scene, _)| scene.clone()), ground);
     rows(set.name, learnt, estimated.into_iter().map(|(_, each)| each), &truth, ground)
+}
+
+/// Every learnt preset on silhouettes from elsewhere, of all cameras.
+pub(crate) fn test_masks(
+    frames: &[Vec<Silhouette>],
+    learnt: &[Learnt],
+    truth: &Truth,
+    ground: &Ground,
+) -> Result<Vec<Row>> {
+    let own = learnt.iter().map(|learnt| -> Result<Option<Refiner>> {
+        if !learnt.answers.contains(&Answer::RefinedOwnHand) {
+            return Ok(None);
+        }
+        let seen: Vec<_> = frames.iter().map(|frame| learnt.of_views(frame)).collect();
+        refined::own_hand_of_masks(&learnt.estimator, &learnt.refiner, &seen).map(Some)
+    });
+    let own = own.collect::<Result<Vec<_>>>()?;
+    let estimates = |frame: &Vec<Silhouette>| -> Result<Vec<Vec<Pose>>> {
+        let mut workspace = Workspace::default();
+        let each = learnt.iter().zip(&own);
+        each.map(|(learnt, own)| learnt.poses(frame, own.as_ref(), &mut workspace)).collect()
+    };
+    let estimated = frames.par_iter().map(estimates).collect::<Result<Vec<_>>>()?;
+    rows("masks", learnt, estimated.into_iter(), truth, ground)
 }
 
 /// The rows of estimates, of each sample one by every answer of every preset.

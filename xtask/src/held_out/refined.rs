@@ -3,7 +3,9 @@
 use anyhow::Result;
 use phalanx::{Estimator, Progress, Refiner, SceneDescriber, Scenes, Workspace};
 use phalanx_hand::Pose;
-use phalanx_refine::{Calibration, Doubt, HandDoubt, Refinement};
+use phalanx_refine::{
+    Calibration, CalibrationFrame, CameraDoubt, Doubt, HandDoubt, Moves, Refinement,
+};
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
@@ -53,26 +55,54 @@ pub(crate) fn own_hands(
     let hands = set.hands();
     progress.begin(&format!("calibrate the hands of {}", set.name), hands);
     let calibrate = |hand: usize| -> Result<Refiner> {
-        let (mut describer, mut workspace) = (describer.clone(), Workspace::default());
+        let mut describer = describer.clone();
         let rounds = others.count() / hands / CALIBRATION_FRAMES;
         let mut frames = Vec::with_capacity(CALIBRATION_FRAMES);
         for k in 0..CALIBRATION_FRAMES {
             let scene = others.scene(hand + hands * rounds * k);
             let all: Vec<Silhouette> = describer.silhouettes(&scene)?.cloned().collect();
-            let seen: Vec<Silhouette> = views.iter().map(|&view| all[view].clone()).collect();
-            let estimate = estimator.estimate_silhouettes(&seen, &mut workspace)?;
-            frames.push(refiner.frame(&seen, &estimate)?);
+            frames.push(views.iter().map(|&view| all[view].clone()).collect());
         }
-        let doubt = Doubt::default();
         // In these tests cameras stand elsewhere in every frame.
-        let calibration = Calibration { cameras: doubt.cameras, ..Calibration::default() };
-        let own = refiner.calibrate(&calibration, &frames)?.hand;
+        let own = calibrated(estimator, refiner, &frames, Moves::EveryFrame)?;
         progress.step();
-        let refinement = Refinement {
-            doubt: Some(Doubt { hand: Some(CALIBRATED), ..doubt }),
-            ..refiner.refinement().clone()
-        };
-        Ok(refiner.with_hand(&own)?.with_refinement(refinement))
+        Ok(own)
     };
     (0..hands).into_par_iter().map(calibrate).collect()
+}
+
+/// A refiner for the hand that all of some frames show.
+fn calibrated(
+    estimator: &Estimator,
+    refiner: &Refiner,
+    frames: &[Vec<Silhouette>],
+    moves: Moves,
+) -> Result<Refiner> {
+    let mut workspace = Workspace::default();
+    let frame = |seen: &Vec<Silhouette>| -> Result<CalibrationFrame> {
+        let estimate = estimator.estimate_silhouettes(seen, &mut workspace)?;
+        Ok(refiner.frame(seen, &estimate)?)
+    };
+    let frames = frames.iter().map(frame).collect::<Result<Vec<_>>>()?;
+    let doubt = Doubt::default();
+    let cameras = doubt.cameras.map(|doubt| CameraDoubt { moves, ..doubt });
+    let calibration = Calibration { cameras, ..Calibration::default() };
+    let own = refiner.calibrate(&calibration, &frames)?.hand;
+    let refinement = Refinement {
+        doubt: Some(Doubt { hand: Some(CALIBRATED), ..doubt }),
+        ..refiner.refinement().clone()
+    };
+    Ok(refiner.with_hand(&own)?.with_refinement(refinement))
+}
+
+/// A refiner for the one hand that silhouettes from elsewhere show, through cameras that stand still;
+/// calibrated from some of them, evenly spaced, without their truth.
+pub(crate) fn own_hand_of_masks(
+    estimator: &Estimator,
+    refiner: &Refiner,
+    frames: &[Vec<Silhouette>],
+) -> Result<Refiner> {
+    let count = frames.len().min(CALIBRATION_FRAMES);
+    let some: Vec<_> = (0..count).map(|k| frames[k * frames.len() / count].clone()).collect();
+    calibrated(estimator, refiner, &some, Moves::Never)
 }

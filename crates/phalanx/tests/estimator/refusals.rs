@@ -184,7 +184,7 @@ fn parts_that_do_not_fit_are_refused() {
     let mut unusable = rig();
     unusable.cameras[0].intrinsics.fx = 0.0;
     assert!(matches!(together(unusable, codes, model), Err(Error::Rig(_))));
-    assert!(Concatenation::from_parts(codebooks.to_vec(), Voting { neighbours: 11 }).is_err());
+    assert!(Concatenation::from_parts(codebooks.clone(), Voting { neighbours: 11 }).is_err());
 }
 
 #[test]

@@ -23,7 +23,7 @@ impl PrincipalPoints {
     /// it, the strongest first.
     pub(super) fn of(samples: &Mat<f64>, count: usize) -> Result<Self> {
         let (m, n) = samples.shape();
-        let axes = linalg::eigen(linalg::gram(samples.transpose()))?;
+        let axes = linalg::eigen(&linalg::gram(samples.transpose()))?;
         let count = count.min(2 * m + 1);
         let centres = Mat::from_fn(m, count, |j, point| match point.checked_sub(1) {
             None => 0.0,

@@ -1,0 +1,109 @@
+//! `phalanx calibrate-hand`.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use image::DynamicImage;
+use phalanx::{Estimator, Picture, Refiner, Segmenter, Workspace};
+use phalanx_refine::{Calibration, CalibrationFrame, CameraDoubt, Doubt, Moves, Refinement};
+use phalanx_segmentation::SkinModel;
+
+use crate::{input, output};
+
+/// More frames tell little more, and each takes its time.
+const MOST_FRAMES: usize = 30;
+/// Fewer leave most of a hand's proportions open.
+const LEAST_FRAMES: usize = 3;
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The model, as `cargo xtask train` writes it.
+    #[arg(long, value_name = "FILE")]
+    model: PathBuf,
+    /// Pictures of one moving hand: a folder for each camera of the model, named like it, with the
+    /// same file names in each. Of more than 30 frames 30 are taken, evenly spaced.
+    #[arg(long, value_name = "DIR")]
+    frames: PathBuf,
+    /// The pictures are silhouettes: brighter than 127 is hand.
+    #[arg(long)]
+    mask: bool,
+    /// The cameras may stand up to some degrees from where they are said to.
+    #[arg(long)]
+    doubt_cameras: bool,
+    /// Where the hand goes.
+    #[arg(long, value_name = "FILE.toml")]
+    out: PathBuf,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let estimator = input::model(&arguments.model)?;
+    let names = frame_names(&arguments.frames, &estimator)?;
+    let doubt = Doubt::default();
+    let refinement = Refinement { doubt: Some(doubt), ..Refinement::default() };
+    let refiner = Refiner::for_estimator(&estimator, refinement)?;
+    let mut frames = Vec::new();
+    for name in &names {
+        match frame(arguments, name, &estimator, &refiner) {
+            Ok(frame) => frames.push(frame),
+            Err(error) => eprintln!("phalanx: frame {name} is left out: {error:#}"),
+        }
+    }
+    let found = frames.len();
+    ensure!(
+        found >= LEAST_FRAMES,
+        "{found} frames can be used; at least {LEAST_FRAMES} are needed"
+    );
+    let cameras = doubt.cameras.filter(|_| arguments.doubt_cameras);
+    let cameras = cameras.map(|doubt| CameraDoubt { moves: Moves::Never, ..doubt });
+    let calibration = Calibration { cameras, ..Calibration::default() };
+    let calibrated = refiner.calibrate(&calibration, &frames)?;
+    output::write_whole(&arguments.out, calibrated.hand.to_toml().as_bytes())?;
+    let overlaps: Vec<f64> = calibrated.overlaps.into_iter().flatten().collect();
+    let mean = overlaps.iter().sum::<f64>() / overlaps.len() as f64;
+    output::print(&format!(
+        "{}: from {found} frames; silhouettes overlap by {mean:.3}, borders are {:.2} px apart{}\n",
+        arguments.out.display(),
+        calibrated.border_px,
+        if calibrated.converged { "" } else { "; it stopped before it settled" },
+    ))
+}
+
+/// The names of the frames of the first camera's folder, at most so many, evenly spaced.
+fn frame_names(folder: &Path, estimator: &Estimator) -> Result<Vec<String>> {
+    let folder = folder.join(&estimator.rig().cameras[0].name);
+    let name = || folder.display().to_string();
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(&folder).with_context(name)? {
+        names.push(entry.with_context(name)?.file_name().to_string_lossy().into_owned());
+    }
+    names.sort_unstable();
+    let count = names.len().min(MOST_FRAMES);
+    Ok((0..count).map(|k| names[k * names.len() / count].clone()).collect())
+}
+
+/// One frame in every camera.
+fn frame(
+    arguments: &Arguments,
+    name: &str,
+    estimator: &Estimator,
+    refiner: &Refiner,
+) -> Result<CalibrationFrame> {
+    let cameras = &estimator.rig().cameras;
+    let paths = cameras.iter().map(|camera| arguments.frames.join(&camera.name).join(name));
+    let pictures: Vec<DynamicImage> =
+        paths.map(|path| input::picture(&path, None)).collect::<Result<_>>()?;
+    let mut workspace = Workspace::default();
+    let estimate = if arguments.mask {
+        let masks: Vec<_> = pictures.iter().map(DynamicImage::to_luma8).collect();
+        let masks: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
+        estimator.estimate(&masks, &mut workspace)?
+    } else {
+        let skin = Segmenter::Skin(SkinModel::builtin());
+        let photographs: Vec<_> = pictures.iter().map(DynamicImage::to_rgb8).collect();
+        let photographs: Vec<Picture<'_>> =
+            photographs.iter().map(|image| Picture::Photograph(image, &skin)).collect();
+        estimator.estimate(&photographs, &mut workspace)?
+    };
+    Ok(refiner.frame(workspace.silhouettes(), &estimate)?)
+}
