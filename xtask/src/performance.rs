@@ -20,11 +20,12 @@ pub(crate) struct Arguments {
 }
 
 /// The packages that have benchmarks.
-const PACKAGES: [&str; 8] = [
+const PACKAGES: [&str; 9] = [
     "phalanx",
     "phalanx-camera",
     "phalanx-codebook",
     "phalanx-hand",
+    "phalanx-refine",
     "phalanx-render",
     "phalanx-rvm",
     "phalanx-segmentation",
@@ -59,6 +60,8 @@ const ESTIMATING: &[Row] = &[
     ("votes of 300 contexts/3 of 90 centres", "300 contexts vote into 3 of 90 centres", None),
     ("votes of 300 contexts/8 of 90 centres", "300 contexts vote into 8 of 90 centres", None),
     ("votes of 300 contexts/30 of 90 centres", "300 contexts vote into 30 of 90 centres", None),
+    ("evidence of three 120x90 silhouettes", "the borders of three silhouettes, to refine by", None),
+    ("refine three 120x90 silhouettes", "**refine one pose by them**", Some(20.0)),
     ("predict 24 from 38 centres of 32/mean", "24 means, 38 Gaussian centres on 32 features", None),
     ("predict 24 from 38 centres of 32/mean and deviation", "24 means and deviations, the same", None),
     ("predict 24 from 837 centres of 90/mean", "24 means, kernel ridge, 837 centres on 90 features", None),

@@ -8,7 +8,7 @@ use phalanx_refine::{
 };
 use phalanx_segmentation::Silhouette;
 
-use crate::{Error, Estimate, Estimator, Hypothesis, ItemRandom, Result, working_camera};
+use crate::{Error, Estimate, Estimator, Framing, Hypothesis, ItemRandom, Result, working_camera};
 
 /// Fits the hand to the silhouettes that it was estimated from.
 #[derive(Debug, Clone)]
@@ -47,8 +47,11 @@ impl Refiner {
     /// ([`phalanx_hand::coupled_pose`]).
     ///
     /// # Errors
-    /// As of [`new`](Self::new).
+    /// As of [`new`](Self::new); an estimator that looks through windows.
     pub fn for_estimator(estimator: &Estimator, refinement: Refinement) -> Result<Self> {
+        if estimator.descriptor().sight().framing == Framing::Window {
+            return Err(Error::RefinesPictures);
+        }
         const POSTURES: u64 = 2000;
         let pose = |item| {
             let mut random = ItemRandom::new(0, item);

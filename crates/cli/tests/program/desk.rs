@@ -80,6 +80,22 @@ impl Desk {
         image.save(self.path(name)).unwrap();
     }
 
+    pub(crate) fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Draws a silhouette of the hand, closed by so much, into `<folder>/<camera>/<name>` for each
+    /// camera.
+    pub(crate) fn draw_frame(&self, folder: &str, name: &str, closed: f64) {
+        let rest = rig().volume.rest_frame();
+        for camera in rig().cameras {
+            let folder = self.path(folder).join(&camera.name);
+            std::fs::create_dir_all(&folder).unwrap();
+            let mask = draw_silhouette(&camera, &HandShape::adult(), &closing(closed), &rest);
+            mask.unwrap().save(folder.join(name)).unwrap();
+        }
+    }
+
     pub(crate) fn open(&self, name: &str) -> DynamicImage {
         image::open(self.path(name)).unwrap()
     }

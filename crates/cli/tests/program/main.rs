@@ -3,4 +3,5 @@
 mod calibrations;
 mod desk;
 mod estimates;
+mod refinements;
 mod refusals;
