@@ -10,6 +10,9 @@ use phalanx_segmentation::Silhouette;
 
 use crate::{Error, Estimate, Estimator, Framing, Hypothesis, ItemRandom, Result, working_camera};
 
+/// Poses from the prior that tell how angles go together.
+const POSTURES: u64 = 2000;
+
 /// Fits the hand to the silhouettes that it was estimated from.
 #[derive(Debug, Clone)]
 pub struct Refiner {
@@ -52,7 +55,6 @@ impl Refiner {
         if estimator.descriptor().sight().framing == Framing::Window {
             return Err(Error::RefinesPictures);
         }
-        const POSTURES: u64 = 2000;
         let pose = |item| {
             let mut random = ItemRandom::new(0, item);
             coupled_pose(|| random.uniform())

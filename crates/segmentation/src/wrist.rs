@@ -24,7 +24,7 @@ type Parts = [(Features, [Features; FEATURES]); 2];
 
 /// Tells the wrist from other sections of a silhouette: the narrowest behind the palm, with a hand
 /// of the right length and area ahead and an arm that widens behind. A quadratic discriminant: one
-/// normal distribution of [`FEATURES`] numbers at wrists, and one elsewhere on hands and arms.
+/// normal distribution of some numbers at wrists, and one elsewhere on hands and arms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WristModel {
     parts: Box<Parts>,
