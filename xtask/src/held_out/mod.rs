@@ -52,8 +52,9 @@ pub(crate) struct Arguments {
     /// The tests, separated by commas; all by default.
     #[arg(long, value_enum, value_delimiter = ',')]
     tests: Vec<Test>,
-    /// The methods, separated by commas; all but `fast` and `best` by default. The presets learn from
-    /// scenes of their own, through one view, two and all.
+    /// The methods, separated by commas; by default those that learn from the paper's descriptors.
+    /// The presets, refined or not, learn from scenes of their own, through one view, two and all;
+    /// that takes minutes for each.
     #[arg(long, value_enum, value_delimiter = ',')]
     methods: Vec<Method>,
     /// Motion from outside to test on, CSV, degrees; where θ_Z does not vary in it, each pose is
@@ -258,7 +259,7 @@ fn methods(arguments: &Arguments) -> Vec<Method> {
     if !arguments.methods.is_empty() {
         return arguments.methods.clone();
     }
-    Method::OF_DESCRIPTORS.into_iter().chain([Method::Preset]).collect()
+    Method::OF_DESCRIPTORS.to_vec()
 }
 
 /// The synthetic tests. `poses` is one of them where there is motion from outside.
