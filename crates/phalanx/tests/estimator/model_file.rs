@@ -88,7 +88,7 @@ fn a_flipped_bit_is_noticed() {
         let error = Estimator::from_bytes(&flipped).unwrap_err();
         let expected = match bit / 8 {
             0..8 => matches!(error, Error::ForeignFile { .. }),
-            8..12 => matches!(error, Error::FileVersion { known: 3, .. }),
+            8..12 => matches!(error, Error::FileVersion { known: 4, .. }),
             12..20 => matches!(error, Error::FileLength { .. }),
             _ => matches!(error, Error::FileChecksum { .. }),
         };
@@ -103,8 +103,8 @@ fn other_files_and_formats_are_refused_by_name() {
         assert_eq!(message(foreign), "not a phalanx model: the file does not begin with its mark");
     }
     let mut newer = bytes();
-    newer[8..12].copy_from_slice(&4_u32.to_le_bytes());
-    assert_eq!(message(&newer), "the model has format 4; this version reads format 3");
+    newer[8..12].copy_from_slice(&5_u32.to_le_bytes());
+    assert_eq!(message(&newer), "the model has format 5; this version reads format 4");
     let mut endless = bytes();
     endless[12..20].copy_from_slice(&u64::MAX.to_le_bytes());
     assert!(matches!(Estimator::from_bytes(&endless), Err(Error::FileLength { .. })));
