@@ -4,17 +4,15 @@ use std::fmt::Write;
 use std::process::Command;
 use std::time::Instant;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 
 use crate::files;
 
 const SAMPLES: [usize; 5] = [1000, 5000, 10_000, 20_000, 50_000];
-/// A training whose time is mostly the fixed cost of codebooks and centres: each sample's own time is
-/// that of what comes on top.
-const FIXED: usize = 5000;
 /// The most memory that 50,000 samples may take, MiB.
 const MOST_MIB: f64 = 2048.0;
-/// The time per sample is flat while the largest training's stays within this of 10,000 samples'.
+/// The time per sample is flat while that of the last samples stays within this of the time of those
+/// before: both are large steps, so that the fixed cost of codebooks and centres does not count.
 const FLAT: f64 = 1.25;
 
 /// What one training took.
@@ -26,18 +24,15 @@ struct Cost {
 
 /// A table of trainings, each in a process of its own, so that its memory is its own too.
 pub(crate) fn section() -> Result<String> {
-    let costs = SAMPLES.map(measure).into_iter().collect::<Result<Vec<_>>>()?;
-    let fixed = costs.iter().find(|cost| cost.samples == FIXED).context("the fixed cost")?;
+    let costs: Vec<Cost> = SAMPLES.into_iter().map(measure).collect::<Result<_>>()?;
     let mut table = String::from(
-        "| samples | time | per sample beyond 5,000 | peak memory | target | |\n|--:|--:|--:|--:|--:|---|\n",
+        "| samples | time | per sample beyond the line above | peak memory | target | |\n|--:|--:|--:|--:|--:|---|\n",
     );
-    for cost in &costs {
+    for (k, cost) in costs.iter().enumerate() {
         let Cost { samples, seconds, mebibytes } = cost;
-        let beyond = samples.saturating_sub(FIXED) as f64;
-        let each = match beyond {
-            0.0 => String::new(),
-            beyond => format!("{:.2} ms", 1e3 * (seconds - fixed.seconds) / beyond),
-        };
+        let before = k.checked_sub(1).map(|before| &costs[before]);
+        let each = before
+            .map_or_else(String::new, |before| format!("{:.2} ms", 1e3 * beyond(cost, before)));
         let (target, verdict) = match samples {
             50_000 if *mebibytes <= MOST_MIB => (format!("{MOST_MIB} MiB"), "met".to_owned()),
             50_000 => {
@@ -48,20 +43,23 @@ pub(crate) fn section() -> Result<String> {
         let row = format!("| {samples} | {seconds:.1} s | {each} | {mebibytes:.0} MiB |");
         writeln!(table, "{row} {target} | {verdict} |")?;
     }
-    writeln!(table, "\n{}", flatness(&costs, fixed)?)?;
+    writeln!(table, "\n{}", flatness(&costs)?)?;
     Ok(table)
 }
 
-/// Whether a sample of the largest training costs what one of a middling training does.
-fn flatness(costs: &[Cost], fixed: &Cost) -> Result<String> {
-    let each = |samples: usize| {
-        let cost = costs.iter().find(|cost| cost.samples == samples).context("a measured size")?;
-        anyhow::Ok((cost.seconds - fixed.seconds) / (samples - FIXED) as f64)
-    };
-    let ratio = each(50_000)? / each(10_000)?;
+/// Seconds of each sample that one training has beyond another.
+fn beyond(more: &Cost, less: &Cost) -> f64 {
+    (more.seconds - less.seconds) / (more.samples - less.samples) as f64
+}
+
+/// Whether the last samples of the largest training cost what those before them do.
+fn flatness(costs: &[Cost]) -> Result<String> {
+    let [.., small, middling, large] = costs else { bail!("three trainings are compared") };
+    let ratio = beyond(large, middling) / beyond(middling, small);
     let verdict = if ratio <= FLAT { "flat" } else { "not flat" };
+    let (last, before) = (large.samples, middling.samples);
     Ok(format!(
-        "A sample of 50,000 takes {ratio:.2} of the time of one of 10,000: {verdict} (at most {FLAT} asked for)."
+        "Up to {last} a sample takes {ratio:.2} of the time that one takes up to {before}: {verdict} (at most {FLAT} asked for)."
     ))
 }
 
