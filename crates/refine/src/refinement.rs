@@ -174,7 +174,10 @@ impl Refinement {
         let overlaps = overlaps(&problem, &best.state, self.finest(), &mut views)?.swap_remove(0);
         Ok(Refined {
             pose: best.state.moments[0].pose,
-            covariance: covariance(&best.frames[0], prior.dofs().len()).unwrap_or_default(),
+            covariance: covariance(&best.frames[0], prior.dofs().len()).ok_or_else(|| {
+                let reason = "leaves directions open that the silhouettes do not tell".to_owned();
+                Error::Precision { reason }
+            })?,
             overlaps,
             border_px: best.border_px(self.noise),
             energy: best.energy,

@@ -125,7 +125,7 @@ impl Learnt {
             Answer::Estimate => Ok(self.estimator.estimate_silhouettes(&seen, workspace)?.pose),
             Answer::Refined => refined::refine(&self.estimator, &self.refiner, &seen, workspace),
             Answer::RefinedOwnHand => {
-                let refiner = own.unwrap_or(&self.refiner);
+                let refiner = own.context("the hand was not calibrated")?;
                 refined::refine(&self.estimator, refiner, &seen, workspace)
             }
         });
