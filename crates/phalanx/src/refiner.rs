@@ -13,6 +13,9 @@ use crate::{Error, Estimate, Estimator, Framing, Hypothesis, ItemRandom, Result,
 /// Poses from the prior that tell how angles go together.
 const POSTURES: u64 = 2000;
 
+/// Where borders stay further apart than this, px, other starts are worth their time.
+const APART: f64 = 0.33;
+
 /// Fits the hand to the silhouettes that it was estimated from.
 #[derive(Debug, Clone)]
 pub struct Refiner {
@@ -170,7 +173,7 @@ impl Refiner {
     ) -> Result<Vec<Refined>> {
         if silhouettes.len() > 1 || hypotheses.is_empty() {
             let refined = self.refine(silhouettes, estimate)?;
-            if hypotheses.is_empty() || refined.border_px <= self.refinement.content {
+            if hypotheses.is_empty() || refined.border_px <= APART {
                 return Ok(vec![refined]);
             }
         }

@@ -46,32 +46,39 @@ struct Nearest {
 pub(crate) struct Bound {
     corners: usize,
     seen: [DVec2; 3],
+    /// A disc that holds the corners.
+    middle: DVec2,
+    around: f64,
     reach: f64,
-    depth: f64,
+    /// How far apart, in the plane, at most what passes by a millimetre is.
+    per_mm: f64,
 }
 
 impl Bound {
-    /// No more than the distance ρ, mm, of the ray through a place of the plane z = 1.
-    pub(crate) fn least(&self, place: DVec2) -> f64 {
-        // A ray off the axis passes nearer than the plane says.
-        const OBLIQUE: f64 = 0.8;
+    /// Whether the ray through a place of the plane z = 1 surely passes at least so far off, mm.
+    pub(crate) fn is_beyond(&self, place: DVec2, distance: f64) -> bool {
+        let apart = self.reach + distance.max(0.0) * self.per_mm;
+        let (squared, of_disc) = (apart * apart, apart + self.around);
+        if self.corners == 0 {
+            return false;
+        }
+        if place.distance_squared(self.middle) >= of_disc * of_disc {
+            return true;
+        }
         let [a, b, c] = self.seen;
-        let apart = match self.corners {
-            0 => return f64::NEG_INFINITY,
-            1 => place.distance_squared(a),
-            2 => squared_distance(place, a, b),
+        match self.corners {
+            1 => place.distance_squared(a) >= squared,
+            2 => squared_distance(place, a, b) >= squared,
             _ => {
                 let side = |from: DVec2, to: DVec2| (to - from).perp_dot(place - from) > 0.0;
                 let sides = [side(a, b), side(b, c), side(c, a)];
-                if sides[0] == sides[1] && sides[1] == sides[2] {
-                    return f64::NEG_INFINITY;
-                }
-                let edges = [(a, b), (b, c), (c, a)].map(|(a, b)| squared_distance(place, a, b));
-                edges[0].min(edges[1]).min(edges[2])
+                let within = sides[0] == sides[1] && sides[1] == sides[2];
+                !within
+                    && [(a, b), (b, c), (c, a)]
+                        .iter()
+                        .all(|&(a, b)| squared_distance(place, a, b) >= squared)
             }
-        };
-        let beyond = apart.sqrt() - self.reach;
-        if beyond > 0.0 { OBLIQUE * beyond * self.depth } else { f64::NEG_INFINITY }
+        }
     }
 }
 
@@ -101,15 +108,22 @@ impl Hull {
     /// Its outline's whereabouts in the plane z = 1.
     pub(crate) fn bound(&self) -> Bound {
         // A ball off the axis is seen wider by less than this.
-        const OBLIQUE: f64 = 1.1;
+        const WIDER: f64 = 1.1;
+        // A ray off the axis passes nearer than the plane says, by no more than this.
+        const NEARER: f64 = 0.8;
         let seen = self.centers.map(|center| center.truncate() / center.z);
-        let reach = [0, 1, 2].map(|k| OBLIQUE * self.radii[k] / self.centers[k].z);
+        let reach = [0, 1, 2].map(|k| WIDER * self.radii[k] / self.centers[k].z);
+        let depth = self.centers[0].z.min(self.centers[1].z).min(self.centers[2].z);
+        let middle = (seen[0] + seen[1] + seen[2]) / 3.0;
+        let around = seen.map(|corner| corner.distance(middle));
         Bound {
             // Undoing the squash moves outlines: such a solid, the forearm, may be anywhere.
             corners: if self.unsquash.is_some() { 0 } else { self.balls },
             seen,
+            middle,
+            around: around[0].max(around[1]).max(around[2]),
             reach: reach[0].max(reach[1]).max(reach[2]),
-            depth: self.centers[0].z.min(self.centers[1].z).min(self.centers[2].z),
+            per_mm: 1.0 / (NEARER * depth),
         }
     }
 
@@ -236,7 +250,9 @@ mod tests {
             // be inside.
             let alike = fast <= slow + 1e-9 && slow - fast < 3.0;
             prop_assert!(alike || (fast < -1.9 && slow < fast), "{fast} is not {slow}");
-            prop_assert!(hull.bound().least(place) <= fast + 1e-9);
+            for beyond in [1e-6, 1.0, 10.0] {
+                prop_assert!(!hull.bound().is_beyond(place, fast + beyond));
+            }
         }
     }
 }

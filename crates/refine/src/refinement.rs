@@ -97,8 +97,8 @@ impl Default for Refinement {
             levels: vec![level(12.0, 4, 6), level(3.0, 2, 6), level(1.0, 1, 6)],
             noise: 0.5,
             margin: 1.0,
-            retries: 2,
-            content: 0.33,
+            retries: 1,
+            content: 0.29,
             doubt: None,
         }
     }
@@ -147,29 +147,13 @@ impl Refinement {
             frames: vec![Frame { evidence, prior }],
             freedom: Freedom::default(),
         };
-        let mut best = self.descend(&problem, start, &mut views)?;
-        let beyond = self.doubt.map_or(f64::INFINITY, |doubt| doubt.beyond);
-        let doubted = best.border_px(self.noise) > beyond;
-        if let (true, Some(doubt)) = (doubted, self.doubt) {
+        let best = self.descend(&problem, start, &mut views)?;
+        let mut best = self.retry(&problem, best, &mut views)?;
+        let mut doubted = false;
+        if let Some(doubt) = self.doubt.filter(|doubt| best.border_px(self.noise) > doubt.beyond) {
+            doubted = true;
             problem.freedom = Freedom { hand: doubt.hand, cameras: doubt.cameras };
-            let state = State {
-                moments: vec![problem.moment(0, &best.state.moments[0].pose)],
-                shared: problem.shared(),
-            };
-            let steps = best.steps;
-            best = self.descend_from(1, &problem, state, &mut views)?;
-            best.steps += steps;
-        }
-        for _ in 0..self.retries {
-            if best.border_px(self.noise) <= self.content {
-                break;
-            }
-            let state = searched(&problem, &best.state, Tries::Pairs, &mut views)?;
-            let other = self.descend_from(1, &problem, state, &mut views)?;
-            if other.energy >= best.energy {
-                break;
-            }
-            best = Outcome { steps: best.steps + other.steps, ..other };
+            best = self.loosen(&problem, &best, &mut views)?;
         }
         let overlaps = overlaps(&problem, &best.state, self.finest(), &mut views)?.swap_remove(0);
         Ok(Refined {
@@ -187,6 +171,47 @@ impl Refinement {
         })
     }
 
+    /// Fits what is doubted too, from a fit of the pose alone.
+    fn loosen(
+        &self,
+        problem: &Problem<'_>,
+        fitted: &Outcome,
+        views: &mut [Vec<View>],
+    ) -> Result<Outcome> {
+        let moment = problem.moment(0, &fitted.state.moments[0].pose);
+        let state = State { moments: vec![moment], shared: problem.shared() };
+        let mut best = self.descend_from(1, problem, state, views)?;
+        best.steps += fitted.steps;
+        self.retry(problem, best, views)
+    }
+
+    /// Tries digits in other postures, first each alone and then neighbours together, until that
+    /// wins nothing.
+    fn retry(
+        &self,
+        problem: &Problem<'_>,
+        mut best: Outcome,
+        views: &mut [Vec<View>],
+    ) -> Result<Outcome> {
+        for _ in 0..self.retries {
+            let before = best.energy;
+            for tries in [Tries::Digits, Tries::Pairs] {
+                if best.border_px(self.noise) <= self.content {
+                    return Ok(best);
+                }
+                let state = searched(problem, &best.state, tries, views)?;
+                let other = self.descend_from(1, problem, state, views)?;
+                let steps = best.steps + other.steps;
+                best = if other.energy < best.energy { other } else { best };
+                best.steps = steps;
+            }
+            if best.energy >= before {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
     /// From coarse to fine with hand and cameras as given.
     fn descend(
         &self,
@@ -198,8 +223,7 @@ impl Refinement {
         let coarsest = &self.levels[0];
         let stop = Stop { steps: coarsest.steps, gain: GAIN };
         let coarse = descend(problem, start.clone(), self.measure(coarsest), stop, views)?;
-        let state = searched(problem, &coarse.state, Tries::Digits, views)?;
-        let mut after = self.descend_from(1, problem, state, views)?;
+        let mut after = self.descend_from(1, problem, coarse.state, views)?;
         after.steps += coarse.steps;
         // What was coarse may have led away from a good start.
         let stay = Stop { steps: 0, gain: GAIN };

@@ -1,6 +1,5 @@
 //! Digits that went the wrong way: they are tried in other postures.
 
-use faer::{Mat, Side};
 use glam::DAffine3;
 use image::GrayImage;
 use phalanx_hand::{Digit, Dof, HandShape, Link, Pose, PosedHand, Primitive};
@@ -8,11 +7,20 @@ use phalanx_hand::{Digit, Dof, HandShape, Link, Pose, PosedHand, Primitive};
 use crate::view::View;
 use crate::{Evidence, PosePrior, Result};
 
-/// Steps along each direction in which the prior leaves a digit freedom, in standard deviations.
-const STEPS: [f64; 6] = [-2.1, -1.4, -0.7, 0.7, 1.4, 2.1];
+/// Places in the range of each of a digit's first two flexions that are tried.
+const PLACES: usize = 6;
 
-/// How many such directions are tried, those of the most freedom.
-const DIRECTIONS: usize = 2;
+/// Valleys of the cost over such postures that are followed down.
+const VALLEYS: usize = 2;
+
+/// How much higher than a pose the valleys that are followed from it may begin.
+const SLOPE: f64 = 50.0;
+
+/// Of the postures of one of two fingers so many are tried with the other's.
+const WITHIN: usize = 8;
+
+/// Steps of an angle on the way down a valley, from half the distance of places, radians.
+const STEPS: [f64; 3] = [0.16, 0.08, 0.04];
 
 /// Energy of a pixel in which the drawn silhouette differs from the observed one.
 const PIXEL: f64 = 1.0;
@@ -35,6 +43,25 @@ struct Background {
     scratch: GrayImage,
 }
 
+/// A posture of one digit or of two, and what speaks against it.
+#[derive(Clone, Copy)]
+struct Costed {
+    cost: f64,
+    pose: Pose,
+    /// Where it is on the grid: two places for each digit.
+    places: [usize; 4],
+}
+
+/// A digit alone in one posture of the grid.
+struct Drawn {
+    pose: Pose,
+    places: [usize; 2],
+    /// In every view.
+    images: Vec<GrayImage>,
+    /// Energy of its pixels outside the observed silhouettes, which no other digit makes up for.
+    spill: f64,
+}
+
 impl Search<'_> {
     /// Tries every digit in other postures, and keeps those that make the drawn silhouettes differ
     /// from the observed ones in fewer pixels, the prior taken into account.
@@ -42,84 +69,132 @@ impl Search<'_> {
         let mut pose = *start;
         for digit in Digit::ALL {
             let mut background = self.background(&pose, &[digit])?;
-            for direction in freedom(self.prior, digit) {
-                let stepped = |step: f64| {
-                    let mut candidate = pose;
-                    for (dof, along) in digit.dofs().into_iter().zip(direction) {
-                        let (low, high) = dof.range();
-                        candidate[dof] = (pose[dof] + step * along).clamp(low, high);
-                    }
-                    candidate
-                };
-                pose = self.best(&pose, STEPS.map(stepped), &mut background)?;
+            let mut tried = Vec::with_capacity(PLACES * PLACES);
+            for ([i, j], posture) in self.postures(digit, &pose) {
+                let cost = self.cost(&posture, &mut background)?;
+                tried.push(Costed { cost, pose: posture, places: [i, j, 0, 0] });
             }
+            pose = self.lowest(&pose, tried, &mut background)?;
         }
         Ok(pose)
     }
 
-    /// Tries neighbouring fingers together in postures from their whole ranges: where one was taken
-    /// for the other, neither finds its place alone.
+    /// Tries neighbouring fingers together: where one was taken for the other, neither finds its
+    /// place alone.
     pub(crate) fn run_pairs(&mut self, start: &Pose) -> Result<Pose> {
         let mut pose = *start;
         for pair in Digit::FINGERS.windows(2) {
-            let background = self.background(&pose, pair)?;
-            let mut tried = Vec::with_capacity(2);
-            for &digit in pair {
-                let mut postures = grid(self.prior, digit, &pose);
-                postures.push(pose);
-                tried.push(self.drawn(digit, &postures)?);
-            }
-            let mut best = (f64::INFINITY, pose);
-            for (one, ones) in &tried[0] {
-                for (other, others) in &tried[1] {
-                    let mut both = *one;
-                    pair[1].dofs().into_iter().for_each(|dof| both[dof] = other[dof]);
-                    let views = background.drawn.iter().zip(ones).zip(others).zip(self.evidence);
-                    let differing: u32 = views
+            let mut background = self.background(&pose, pair)?;
+            let (ones, others) = (self.drawn(pair[0], &pose)?, self.drawn(pair[1], &pose)?);
+            let mut tried = Vec::with_capacity(ones.len() * others.len());
+            for one in &ones {
+                for other in &others {
+                    let mut both = one.pose;
+                    pair[1].dofs().into_iter().for_each(|dof| both[dof] = other.pose[dof]);
+                    let layers = background.drawn.iter().zip(&one.images).zip(&other.images);
+                    let differing: u32 = layers
+                        .zip(self.evidence)
                         .map(|(((rest, one), other), seen)| {
                             difference([rest, one, other], seen.mask())
                         })
                         .sum();
+                    let ([i, j], [k, l]) = (one.places, other.places);
                     let cost = PIXEL * f64::from(differing) + self.prior.energy(&both);
-                    if cost < best.0 {
-                        best = (cost, both);
-                    }
+                    tried.push(Costed { cost, pose: both, places: [i, j, k, l] });
                 }
             }
-            pose = best.1;
+            pose = self.lowest(&pose, tried, &mut background)?;
         }
         Ok(pose)
     }
 
-    /// A digit in each of some postures, alone, in every view.
-    fn drawn(&mut self, digit: Digit, postures: &[Pose]) -> Result<Vec<(Pose, Vec<GrayImage>)>> {
-        let mut drawn = Vec::with_capacity(postures.len());
-        for &posture in postures {
-            let own = solids(&self.hand.pose(&posture, self.rest), &[digit], Part::Digits);
+    /// A digit's first two flexions on a grid over their ranges; the last joint's follows the one
+    /// before it, as in the prior. None where the prior knows them.
+    fn postures(&self, digit: Digit, pose: &Pose) -> Vec<([usize; 2], Pose)> {
+        let [_, base, middle, last] = digit.dofs();
+        let Some(covariance) = self.prior.covariance_of(&[middle, last]) else {
+            return Vec::new();
+        };
+        let slope = covariance[1] / covariance[0];
+        let at = |dof: Dof, place: usize| {
+            let (low, high) = dof.range();
+            low + (place as f64 + 0.5) / PLACES as f64 * (high - low)
+        };
+        let posture = |number: usize| {
+            let mut posture = *pose;
+            let places = [number / PLACES, number % PLACES];
+            posture[base] = at(base, places[0]);
+            posture[middle] = at(middle, places[1]);
+            let mean = self.prior.mean();
+            let (low, high) = last.range();
+            let follows = mean[last] + slope * (posture[middle] - mean[middle]);
+            posture[last] = follows.clamp(low, high);
+            (places, posture)
+        };
+        (0..PLACES * PLACES).map(posture).collect()
+    }
+
+    /// A digit alone, in those postures that lie best within the observed silhouettes.
+    fn drawn(&mut self, digit: Digit, pose: &Pose) -> Result<Vec<Drawn>> {
+        let mut drawn = Vec::with_capacity(PLACES * PLACES);
+        for (places, pose) in self.postures(digit, pose) {
+            let own = solids(&self.hand.pose(&pose, self.rest), &[digit], Part::Digits);
             let mut images = vec![GrayImage::default(); self.views.len()];
+            let mut outside = 0;
             for (v, image) in images.iter_mut().enumerate() {
                 self.draw(v, &own, image)?;
+                let seen = self.evidence[v].mask();
+                outside += difference([seen, seen, image], seen);
             }
-            drawn.push((posture, images));
+            let spill = PIXEL * f64::from(outside) + self.prior.energy(&pose);
+            drawn.push(Drawn { pose, places, images, spill });
         }
+        drawn.sort_by(|a, b| a.spill.total_cmp(&b.spill));
+        drawn.truncate(WITHIN);
         Ok(drawn)
     }
 
-    /// The best of a pose and others that differ from it in the background's digits.
-    fn best(
+    /// The best of a pose and what others lead to that differ from it in the background's digits.
+    fn lowest(
         &mut self,
         pose: &Pose,
-        others: impl IntoIterator<Item = Pose>,
+        others: Vec<Costed>,
         background: &mut Background,
     ) -> Result<Pose> {
-        let mut best = (self.cost(pose, background)?, *pose);
-        for candidate in others {
-            let cost = self.cost(&candidate, background)?;
-            if cost < best.0 {
-                best = (cost, candidate);
+        let cost = self.cost(pose, background)?;
+        let mut best = Costed { cost, pose: *pose, places: [0; 4] };
+        for other in valleys(others, cost + SLOPE) {
+            let found = self.follow(&other, background)?;
+            if found.cost < best.cost {
+                best = found;
             }
         }
-        Ok(best.1)
+        Ok(best.pose)
+    }
+
+    /// Follows a valley down by smaller and smaller steps of each angle; the last joint moves with
+    /// the one before it.
+    fn follow(&mut self, from: &Costed, background: &mut Background) -> Result<Costed> {
+        let mut best = *from;
+        for step in STEPS {
+            for digit in background.digits.clone() {
+                let [abduction, base, middle, last] = digit.dofs();
+                for moved in [&[abduction][..], &[base], &[middle, last]] {
+                    for step in [-step, step] {
+                        let mut candidate = best.pose;
+                        for &dof in moved {
+                            let (low, high) = dof.range();
+                            candidate[dof] = (candidate[dof] + step).clamp(low, high);
+                        }
+                        let cost = self.cost(&candidate, background)?;
+                        if cost < best.cost {
+                            best = Costed { cost, pose: candidate, ..best };
+                        }
+                    }
+                }
+            }
+        }
+        Ok(best)
     }
 
     fn background(&mut self, pose: &Pose, digits: &[Digit]) -> Result<Background> {
@@ -167,43 +242,32 @@ fn solids(posed: &PosedHand, digits: &[Digit], part: Part) -> Vec<Primitive> {
 
 /// How many pixels of the union of three masks differ from a fourth.
 fn difference([a, b, c]: [&GrayImage; 3], seen: &GrayImage) -> u32 {
-    let pixels = a.iter().zip(b.iter()).zip(c.iter()).zip(seen.iter());
-    pixels.map(|(((a, b), c), seen)| u32::from((a | b | c) >> 7 != seen >> 7)).sum()
+    // So few at a time that a byte can count them.
+    const COUNTED: usize = 240;
+    let layers = a.chunks(COUNTED).zip(b.chunks(COUNTED));
+    let layers = layers.zip(c.chunks(COUNTED)).zip(seen.chunks(COUNTED));
+    let mut differing = 0;
+    for (((a, b), c), seen) in layers {
+        let pixels = a.iter().zip(b).zip(c).zip(seen);
+        let counted = pixels.map(|(((a, b), c), seen)| ((a | b | c) ^ seen) >> 7).sum::<u8>();
+        differing += u32::from(counted);
+    }
+    differing
 }
 
-/// The principal directions of the prior's covariance of a digit's four angles, each as long as its
-/// standard deviation; none where the prior knows an angle.
-fn freedom(prior: &PosePrior, digit: Digit) -> Vec<[f64; 4]> {
-    let Some(covariance) = prior.covariance_of(&digit.dofs()) else { return Vec::new() };
-    let covariance = Mat::from_fn(4, 4, |i, j| covariance[4 * j + i]);
-    let Ok(eigen) = covariance.self_adjoint_eigen(Side::Lower) else { return Vec::new() };
-    // Eigenvalues ascend.
-    let direction = |k: usize| {
-        let length = eigen.S()[k].max(0.0).sqrt();
-        std::array::from_fn(|i| eigen.U()[(i, k)] * length)
-    };
-    (4 - DIRECTIONS..4).rev().map(direction).collect()
-}
-
-/// A digit's two flexions next to its base on a grid over their ranges; the last joint's follows the
-/// one before it, as in the prior.
-fn grid(prior: &PosePrior, digit: Digit, pose: &Pose) -> Vec<Pose> {
-    const PLACES: [f64; 4] = [0.1, 0.37, 0.63, 0.9];
-    let [_, base, middle, last] = digit.dofs();
-    let Some(covariance) = prior.covariance_of(&[middle, last]) else { return Vec::new() };
-    let slope = covariance[1] / covariance[0];
-    let at = |dof: Dof, place: f64| {
-        let (low, high) = dof.range();
-        low + place * (high - low)
-    };
-    let posture = |base_place: f64, middle_place: f64| {
-        let mut posture = *pose;
-        posture[base] = at(base, base_place);
-        posture[middle] = at(middle, middle_place);
-        let (low, high) = last.range();
-        let follows = prior.mean()[last] + slope * (posture[middle] - prior.mean()[middle]);
-        posture[last] = follows.clamp(low, high);
-        posture
-    };
-    PLACES.iter().flat_map(|&b| PLACES.iter().map(move |&m| posture(b, m))).collect()
+/// The lowest of postures on a grid, none beside another and none above a limit.
+fn valleys(mut tried: Vec<Costed>, limit: f64) -> Vec<Costed> {
+    tried.retain(|costed| costed.cost < limit);
+    tried.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let mut lowest: Vec<Costed> = Vec::with_capacity(VALLEYS);
+    for costed in tried {
+        let beside = |other: &Costed| {
+            let places = costed.places.iter().zip(other.places);
+            places.into_iter().all(|(&a, b)| a.abs_diff(b) <= 1)
+        };
+        if lowest.len() < VALLEYS && !lowest.iter().any(beside) {
+            lowest.push(costed);
+        }
+    }
+    lowest
 }

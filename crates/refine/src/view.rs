@@ -25,6 +25,9 @@ pub(crate) struct Match {
 /// does not say.
 const CLOSE: f64 = 1.2;
 
+/// How far drawn outlines may be off, px: a tenth of what is known of observed ones.
+const DEVIATION: f64 = 0.05;
+
 /// A hull, and where its outline may be.
 #[derive(Debug, Clone)]
 struct Seen {
@@ -51,18 +54,22 @@ pub(crate) struct View {
     seen: Vec<Seen>,
     drawn: GrayImage,
     cracks: Vec<DVec2>,
+    /// The solid that each observed crack was matched with last: seldom another next time.
+    last: Vec<usize>,
     pub(crate) matches: Vec<Match>,
 }
 
 impl View {
     pub(crate) fn new(evidence: &Evidence) -> Result<Self> {
         let camera = evidence.camera();
-        let renderer = Renderer::new(camera).map_err(|reason| render_error(evidence, reason))?;
+        let renderer = Renderer::new(camera).and_then(|own| own.with_deviation(DEVIATION));
+        let renderer = renderer.map_err(|reason| render_error(evidence, reason))?;
         Ok(Self {
             renderer,
             seen: Vec::new(),
             drawn: GrayImage::default(),
             cracks: Vec::new(),
+            last: vec![0; evidence.cracks().len()],
             matches: Vec::new(),
         })
     }
@@ -88,12 +95,13 @@ impl View {
         self.seen.clear();
         self.seen.extend(solids.iter().map(|solid| Seen::new(&solid.moved(&to_camera))));
         self.matches.clear();
-        let mut last = 0;
-        for (&ray, &normal) in evidence.rays().iter().zip(evidence.normals()).step_by(every) {
-            let found = closest(&self.seen, ray, Some(normal), last);
-            last = found.solid;
+        let observed = evidence.rays().iter().zip(evidence.normals()).zip(&mut self.last);
+        for ((&ray, &normal), last) in observed.step_by(every) {
+            let found = closest(&self.seen, ray, Some(normal), (*last).min(solids.len() - 1));
+            *last = found.solid;
             self.matches.push(found);
         }
+        let mut last = 0;
         for &crack in self.cracks.iter().step_by(every) {
             let nearest = evidence.nearest(crack);
             if evidence.cracks()[nearest].distance_squared(crack) < CLOSE * CLOSE {
@@ -152,7 +160,7 @@ fn closest(seen: &[Seen], ray: DVec3, background: Option<DVec2>, hint: usize) ->
     let mut best = Match::new(ray, hint, seen[hint].hull.pass(ray));
     let mut least = cost(&best.passing);
     for (solid, candidate) in seen.iter().enumerate() {
-        if solid != hint && candidate.bound.least(place) < least {
+        if solid != hint && !candidate.bound.is_beyond(place, least) {
             let passing = candidate.hull.pass(ray);
             let cost = cost(&passing);
             if cost < least {

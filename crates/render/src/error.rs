@@ -34,6 +34,12 @@ pub enum Error {
         /// Width and height of the camera's image, px.
         want: (u32, u32),
     },
+    /// Outlines cannot be asked to be so far off.
+    #[error("outlines may be 0.001 to 1 px off, not {found}")]
+    Deviation {
+        /// What was asked for, px.
+        found: f64,
+    },
     /// A number of an [`Appearance`](crate::Appearance) is out of its range.
     #[error("appearance: {field} is out of range")]
     Appearance {

@@ -12,9 +12,6 @@ use phalanx_hand::{Ball, Primitive};
 /// Nothing may come nearer to the camera's plane than this, mm.
 const NEAR: f64 = 1.0;
 
-/// How far the polygon may stay inside the outline, px.
-pub(crate) const DEVIATION: f64 = 0.005;
-
 /// A filled ellipse of the normalised image plane: middle + √shape · (unit disc).
 #[derive(Clone, Copy, Default)]
 struct Ellipse {
@@ -61,11 +58,12 @@ impl Ellipse {
     }
 }
 
-/// Appends the corners of a solid's outline, in order, in the normalised image plane; `focal`
-/// (px) decides how many. A solid too near gives its least depth, mm.
+/// Appends the corners of a solid's outline, in order, in the normalised image plane, so many that
+/// the polygon stays within `deviation` inside the outline. A solid too near gives its least depth,
+/// mm.
 pub(crate) fn trace(
     solid_in_camera: &Primitive,
-    focal: f64,
+    deviation: f64,
     corners: &mut Vec<DVec2>,
 ) -> Result<(), f64> {
     let balls = solid_in_camera.balls();
@@ -74,16 +72,16 @@ pub(crate) fn trace(
     for (ellipse, ball) in ellipses.iter_mut().zip(balls) {
         *ellipse = Ellipse::of(ball, squash, balls[0].center)?;
     }
-    walk(&ellipses[..balls.len()], focal, corners);
+    walk(&ellipses[..balls.len()], deviation, corners);
     Ok(())
 }
 
 /// Walks once around the hull of some ellipses by the direction of its normal: the furthest
 /// ellipse in each direction gives the corner.
-fn walk(ellipses: &[Ellipse], focal: f64, corners: &mut Vec<DVec2>) {
+fn walk(ellipses: &[Ellipse], deviation: f64, corners: &mut Vec<DVec2>) {
     // While its normal turns by 2π/n, a curve of radius ρ strays π²ρ/2n² from its chord.
-    let radius = focal * ellipses.iter().map(Ellipse::flattest).fold(0.0, f64::max);
-    let steps = (PI * (radius / (2.0 * DEVIATION)).sqrt()).ceil().clamp(12.0, 1024.0) as u32;
+    let radius = ellipses.iter().map(Ellipse::flattest).fold(0.0, f64::max);
+    let steps = (PI * (radius / (2.0 * deviation)).sqrt()).ceil().clamp(12.0, 1024.0) as u32;
     let turn = DVec2::from_angle(TAU / f64::from(steps));
     let mut normal = DVec2::X;
     let (mut leader, mut corner) = furthest(ellipses, normal);

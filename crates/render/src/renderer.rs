@@ -34,6 +34,8 @@ pub struct Renderer {
     to_camera: DAffine3,
     /// Radius of a disc of the normalised plane that holds the picture, short of the fold.
     reach: f64,
+    /// How far the polygons of outlines may stay inside them, px.
+    deviation: f64,
     /// Corners of all outlines, px, and where each ends.
     corners: Vec<DVec2>,
     ends: Vec<usize>,
@@ -50,6 +52,9 @@ impl Renderer {
     /// Radius, in the normalised plane, of the sharpest curve that a lens is taken to make of a
     /// straight line. It only decides how finely outlines are drawn.
     const SHARPEST: f64 = 2.0;
+
+    /// How far outlines are off, px, unless it is said otherwise.
+    const DEVIATION: f64 = 0.005;
 
     /// Places on each side of the picture at which the lens is asked how far it reaches, less one.
     const BORDER: u32 = 32;
@@ -76,6 +81,7 @@ impl Renderer {
                 camera.extrinsics.translation,
             ),
             reach: reach.unwrap_or(farthest),
+            deviation: Self::DEVIATION,
             corners: Vec::new(),
             ends: Vec::new(),
             ideal: Vec::new(),
@@ -86,13 +92,26 @@ impl Renderer {
         })
     }
 
+    /// The same with outlines that may be so far off, px, in place of 0.005: coarser ones are drawn
+    /// faster.
+    ///
+    /// # Errors
+    /// A deviation that is not between 0.001 and 1.
+    pub fn with_deviation(self, deviation: f64) -> Result<Self> {
+        if !(0.001..=1.0).contains(&deviation) {
+            return Err(Error::Deviation { found: deviation });
+        }
+        Ok(Self { deviation, ..self })
+    }
+
     /// Width and height of the pictures, px.
     pub fn size(&self) -> (u32, u32) {
         (self.intrinsics.width, self.intrinsics.height)
     }
 
     /// The solids' silhouette: 255 where a pixel's centre is covered, else 0. Outlines are
-    /// accurate to 0.01 px.
+    /// accurate to 0.01 px, unless they may be
+    /// [further off](Self::with_deviation).
     pub fn silhouette(&mut self, primitives: &[Primitive]) -> Result<GrayImage> {
         let mut image = GrayImage::default();
         self.silhouette_into(primitives, &mut image)?;
@@ -220,8 +239,12 @@ impl Renderer {
         for (index, primitive) in primitives.iter().enumerate() {
             check(primitive).map_err(|field| Error::Primitive { index, field })?;
             self.ideal.clear();
-            outline::trace(&primitive.moved(&self.to_camera), focal, &mut self.ideal)
-                .map_err(|nearest_mm| Error::TooNear { index, nearest_mm })?;
+            outline::trace(
+                &primitive.moved(&self.to_camera),
+                self.deviation / focal,
+                &mut self.ideal,
+            )
+            .map_err(|nearest_mm| Error::TooNear { index, nearest_mm })?;
             self.push_outline(focal);
             self.ends.push(self.corners.len());
         }
@@ -237,7 +260,7 @@ impl Renderer {
         }
         let Some(last) = self.ideal.last() else { return };
         // A chord of length c strays c²/8R from its arc.
-        let longest = (8.0 * Self::SHARPEST * outline::DEVIATION / focal).sqrt();
+        let longest = (8.0 * Self::SHARPEST * self.deviation / focal).sqrt();
         // The lens may fold over beyond the picture. Pulling what is outside a disc onto its
         // rim leaves the inside of the outline as it is within the disc.
         let pull = |p: DVec2| p.clamp_length_max(self.reach);

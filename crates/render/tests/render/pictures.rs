@@ -156,6 +156,14 @@ fn bad_solids_are_refused_by_index() {
 }
 
 #[test]
+fn deviations_out_of_range_are_refused() {
+    for found in [0.0, -1.0, 1.5, f64::NAN] {
+        let error = renderer().with_deviation(found).unwrap_err();
+        assert!(error.to_string().contains("0.001 to 1 px"), "{error}");
+    }
+}
+
+#[test]
 fn bad_cameras_are_refused() {
     let mut bad: Camera = camera(Intrinsics::pinhole(120, 90, 110.0));
     bad.intrinsics.width = 0;

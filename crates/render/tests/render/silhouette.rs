@@ -206,6 +206,21 @@ proptest! {
 }
 
 #[test]
+fn coarse_outlines_lose_no_more_than_they_may() {
+    let camera = lens(Distortion::NONE);
+    let ball = [Primitive::Sphere(Ball::new(DVec3::new(3.0, -2.0, 300.0), 80.0))];
+    let drawn = |deviation: f64| {
+        let mut renderer = Renderer::new(&camera).unwrap().with_deviation(deviation).unwrap();
+        mean(&renderer.coverage(&ball, Supersampling::X8).unwrap())
+    };
+    let pixels = 120.0 * 90.0;
+    let (fine, coarse) = (drawn(0.001) * pixels, drawn(0.2) * pixels);
+    let outline = std::f64::consts::TAU * (fine / std::f64::consts::PI).sqrt();
+    let lost = (fine - coarse) / outline;
+    assert!((0.05..=0.2).contains(&lost), "{lost} px on average");
+}
+
+#[test]
 fn an_image_of_another_size_is_replaced() {
     let mut renderer = Renderer::new(&lens(Distortion::NONE)).unwrap();
     let ball = [Primitive::Sphere(Ball::new(DVec3::ZERO, 20.0))];
