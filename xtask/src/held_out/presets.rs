@@ -30,6 +30,10 @@ pub(crate) enum Answer {
 /// Scenes from which it is learnt how estimates err, where they are refined.
 const ERROR_SCENES: usize = 4000;
 
+/// Of so many samples of a test one is refined, which takes its time; shares no factor with the
+/// number of hands that a test shows in turn.
+const REFINED_EVERY: usize = 5;
+
 /// A preset learnt from some of the cameras.
 pub(crate) struct Learnt {
     answers: Vec<Answer>,
@@ -71,6 +75,10 @@ pub(crate) fn learn(
     Ok(learnt)
 }
 
+fn refines(answers: &[Answer]) -> bool {
+    answers.iter().any(|answer| *answer != Answer::Estimate)
+}
+
 fn views(ground: &Ground) -> Vec<Vec<usize>> {
     let all = ground.rig.cameras.len();
     let single = single_view(&ground.rig).unwrap_or(0);
@@ -97,7 +105,7 @@ impl Learnt {
         progress.begin("fit the regressor", 1);
         let mut estimator = part.finish()?;
         progress.step();
-        if answers.iter().any(|answer| *answer != Answer::Estimate) {
+        if refines(&answers) {
             let fresh = sets::fresh(&rig, &ground.hand, ERROR_SCENES, Augment::Yes);
             estimator = estimator.learn_errors(&fresh, progress)?;
         }
@@ -106,6 +114,10 @@ impl Learnt {
         });
         let refiner = refined::refiner(&estimator, ground)?;
         Ok(Self { answers, refiner, preset, samples, views, estimator, mean: Pose(mean) })
+    }
+
+    fn refines(&self) -> bool {
+        refines(&self.answers)
     }
 
     /// The silhouettes of the cameras that it was learnt from, of those of all.
@@ -176,8 +188,11 @@ pub(crate) fn test(
     let own = learnt.iter().map(|learnt| learnt.own_hands(set, ground, progress));
     let own = own.collect::<Result<Vec<_>>>()?;
     let describer = SceneDescriber::new(&ground.rig, ground.rule)?;
-    progress.begin(&format!("see {}", set.name), set.count());
-    let estimates = |(describer, workspace): &mut (SceneDescriber, Workspace), number: usize| {
+    let refined = learnt.iter().any(Learnt::refines);
+    let every = if refined { REFINED_EVERY } else { 1 };
+    let numbers: Vec<usize> = (0..set.count()).step_by(every).collect();
+    progress.begin(&format!("see {}", set.name), numbers.len());
+    let estimates = |(describer, workspace): &mut (SceneDescriber, Workspace), &number: &usize| {
         let scene = set.scene(number);
         let seen = describer.silhouettes(&scene).ok().map(|seen| seen.cloned().collect());
         progress.step();
@@ -189,10 +204,9 @@ pub(crate) fn test(
         Some((scene, each.collect::<Result<Vec<_>>>().ok()?))
     };
     let memory = || (describer.clone(), Workspace::default());
-    let estimated: Vec<_> =
-        (0..set.count()).into_par_iter().map_init(memory, estimates).flatten().collect();
-    if estimated.len() < set.count() {
-        let (left_out, all) = (set.count() - estimated.len(), set.count());
+    let estimated: Vec<_> = numbers.par_iter().map_init(memory, estimates).flatten().collect();
+    if estimated.len() < numbers.len() {
+        let (left_out, all) = (numbers.len() - estimated.len(), numbers.len());
         eprintln!("{}: {left_out} of {all} cannot be estimated by every preset", set.name);
     }
     let truth = Truth::of(estimated.iter().map(|(scene, _)| scene.clone()), ground);

@@ -37,6 +37,15 @@ impl Block<'_> {
 
     /// The test's name, then each method's error.
     pub(crate) fn cells(&self) -> Vec<Vec<String>> {
+        self.cells_of(cell)
+    }
+
+    /// Whether estimates were refined.
+    fn is_refined(&self) -> bool {
+        self.methods().iter().any(|method| method.starts_with("refined"))
+    }
+
+    fn cells_of(&self, cell: fn(&Row) -> String) -> Vec<Vec<String>> {
         let line = |test: &'static str| {
             let cell = |method: &str| {
                 let row = self.rows.iter().find(|row| row.test == test && row.method == method);
@@ -66,17 +75,28 @@ fn cell(row: &Row) -> String {
     }
 }
 
-/// One table for each block.
+fn worst(row: &Row) -> String {
+    format!("{:.2} {}", row.worst_deg, row.worst_dof)
+}
+
+/// One table for each block, and one of the worst angles where estimates were refined.
 pub(crate) fn tables(rows: &[Row]) -> String {
     let mut text = String::from(
         "# What was never seen\n\nPrinted by `cargo xtask eval-held-out`: mean absolute error over the 21 active angles in\n\
          degrees and, in brackets, over that of predicting the training mean.\n",
     );
     for block in blocks(rows) {
-        let mut table = Table::new();
-        let header = std::iter::once("test").chain(block.methods());
-        table.load_style(presets::ASCII_MARKDOWN).set_header(header).add_rows(block.cells());
-        let _ = write!(text, "\n## {}\n\n{table}\n", block.title());
+        let table = |cells| {
+            let mut table = Table::new();
+            let header = std::iter::once("test").chain(block.methods());
+            table.load_style(presets::ASCII_MARKDOWN).set_header(header).add_rows(cells);
+            table
+        };
+        let _ = write!(text, "\n## {}\n\n{}\n", block.title(), table(block.cells()));
+        if block.is_refined() {
+            let cells = block.cells_of(worst);
+            let _ = write!(text, "\nThe worst angle, degrees:\n\n{}\n", table(cells));
+        }
     }
     text
 }
