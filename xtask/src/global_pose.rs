@@ -5,13 +5,12 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 use phalanx::{
-    Estimate, Estimator, EvenlySpaced, Framing, Picture, Preset, Progress, Refiner, SceneDescriber,
-    Scenes, Shard, Training, Window, Workspace, initial_global,
+    Estimator, EvenlySpaced, Framing, Picture, Preset, Progress, Refiner, SceneDescriber, Scenes,
+    Shard, Training, Workspace,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
-use phalanx_refine::{Evidence, Refinement};
-use phalanx_segmentation::LocatedHand;
+use phalanx_refine::Refinement;
 use rayon::prelude::*;
 
 use crate::sets::{self, Set, Test};
@@ -21,11 +20,6 @@ use crate::{files, progress};
 const PRESET: Preset = Preset::Fast;
 /// Hands of the test that are looked at, evenly spaced.
 const TESTED: usize = 500;
-
-/// How far off a start usually is: the arm's direction in each of θ_X and θ_Y, the wrist along each
-/// axis.
-const LEAN_STD_DEG: f64 = 6.0;
-const POSITION_STD_MM: f64 = 8.0;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -112,10 +106,10 @@ fn rows(
                 let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
                 let found = match estimator.estimate(&pictures, workspace) {
                     Ok(estimate) => {
-                        let start = start(estimator, &estimate, workspace.windows())?;
-                        let refined = refine(refiner, &start, workspace)?;
+                        let evidence = refiner.evidence_of(workspace)?;
+                        let refined = refiner.refine(&evidence, &estimate)?;
                         let of = |pose: &Pose| Errors::of(pose, &scene.pose);
-                        Some([of(&start.pose), of(&refined)])
+                        Some([of(&estimate.pose), of(&refined.pose)])
                     }
                     Err(_) => None,
                 };
@@ -142,35 +136,6 @@ fn rows(
             + "\n"
     };
     Ok(row(0, "start") + &row(1, "refined"))
-}
-
-/// An estimate with its global pose found from the windows.
-pub(crate) fn start(
-    estimator: &Estimator,
-    estimate: &Estimate,
-    windows: &[Window],
-) -> Result<Estimate> {
-    let hands: Vec<Option<LocatedHand>> = windows.iter().map(|window| Some(window.hand)).collect();
-    let start = initial_global(estimator.rig(), estimator.hand(), &estimate.pose, &hands)?;
-    let mut std = estimate.std;
-    for dof in [Dof::ThetaX, Dof::ThetaY] {
-        std[dof.index()] = LEAN_STD_DEG.to_radians();
-    }
-    for dof in [Dof::TX, Dof::TY, Dof::TZ] {
-        std[dof.index()] = POSITION_STD_MM;
-    }
-    Ok(Estimate { pose: start.pose, std, ..estimate.clone() })
-}
-
-/// The pose refined through the windows.
-fn refine(refiner: &Refiner, start: &Estimate, workspace: &Workspace) -> Result<Pose> {
-    let pairs = workspace.windows().iter().zip(workspace.silhouettes());
-    let evidence: Vec<Evidence> =
-        pairs.map(|(window, seen)| window.evidence(seen)).collect::<Result<_, _>>()?;
-    let prior = refiner.prior(&start.pose, &start.std)?;
-    let refinement = Refinement::default();
-    let (hand, rest) = (refiner.hand(), refiner.rest());
-    Ok(refinement.run(hand, rest, &evidence, prior.mean(), &prior)?.pose)
 }
 
 impl Errors {

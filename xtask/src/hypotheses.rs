@@ -14,7 +14,7 @@ use phalanx_refine::Refinement;
 use phalanx_rvm::{ConditionalDensity, Standardiser};
 use rayon::prelude::*;
 
-use crate::held_out::errors::active_angles;
+use crate::held_out::errors::mean_error_deg;
 use crate::sets::{self, Augment, Set, Test};
 use crate::{files, progress};
 
@@ -143,8 +143,9 @@ fn hypotheses(
         let silhouettes: Vec<_> = describer.silhouettes(&scene)?.cloned().collect();
         let estimate = estimator.estimate_silhouettes(&silhouettes, workspace)?;
         let hypotheses = estimator.hypotheses(&estimate, MOST)?;
-        let refined = refiner.refine_hypotheses(&silhouettes, &estimate, &hypotheses)?;
-        let alone = refiner.refine(&silhouettes, &estimate)?;
+        let evidence = refiner.evidence(&silhouettes)?;
+        let refined = refiner.refine_hypotheses(&evidence, &estimate, &hypotheses)?;
+        let alone = refiner.refine(&evidence, &estimate)?;
         progress.step();
         Ok(Found {
             poses: hypotheses.iter().map(|hypothesis| hypothesis.pose).collect(),
@@ -204,13 +205,12 @@ fn middles(poses: &[Pose]) -> Result<Vec<Pose>> {
 
 /// Mean over the samples of the error of whichever of the first `most` poses is nearest, degrees.
 fn best_of(most: usize, answers: &[Vec<Pose>], truth: &[Pose]) -> f64 {
-    let angles = active_angles();
-    let error = |pose: &Pose, truth: &Pose| -> f64 {
-        let differences = angles.iter().map(|&dof| (pose[dof] - truth[dof]).abs());
-        differences.sum::<f64>().to_degrees() / angles.len() as f64
-    };
     let best = |(poses, truth): (&Vec<Pose>, &Pose)| -> f64 {
-        poses.iter().take(most).map(|pose| error(pose, truth)).fold(f64::INFINITY, f64::min)
+        poses
+            .iter()
+            .take(most)
+            .map(|pose| mean_error_deg(pose, truth))
+            .fold(f64::INFINITY, f64::min)
     };
     answers.iter().zip(truth).map(best).sum::<f64>() / truth.len() as f64
 }

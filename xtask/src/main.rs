@@ -1,5 +1,6 @@
 //! The experiments and chores of phalanx.
 
+mod ablation;
 mod chart;
 mod contact_sheet;
 mod data_set;
@@ -74,6 +75,8 @@ enum Command {
     Selection(selection::Arguments),
     /// Compare ways of naming several poses for one picture, and write docs/hypotheses.md.
     Hypotheses(hypotheses::Arguments),
+    /// Switch off each part of learning and refining in turn, and write docs/ablation.md.
+    Ablation(ablation::Arguments),
     /// Put one of the paper's figures or claims to the test.
     Experiment(experiments::Arguments),
     /// Run every experiment and write one page that a reader of the paper can follow.
@@ -124,6 +127,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::EvalGlobal(arguments) => global_pose::run(arguments)?,
         Command::Selection(arguments) => selection::run(arguments)?,
         Command::Hypotheses(arguments) => hypotheses::run(arguments)?,
+        Command::Ablation(arguments) => ablation::run(arguments)?,
         Command::Experiment(arguments) => experiments::run(arguments)?,
         Command::Report(arguments) => return report::run(arguments),
         Command::Headline(arguments) => headline::run(arguments)?,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
-use phalanx::{Estimator, Preset, Regressor, Scenes, Shard, Training};
+use phalanx::{Estimator, Framing, Preset, Regressor, Scenes, Shard, Training};
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
 
@@ -34,6 +34,10 @@ pub(crate) struct Arguments {
     /// vary in it, it is drawn from 0° to 90°.
     #[arg(long, value_name = "FILE.csv", requires = "preset")]
     poses: Option<PathBuf>,
+    /// With `--preset`, what of the pictures is looked at: `window` learns from hands anywhere in the
+    /// rig's volume, their arms leaning, and finds out where they are.
+    #[arg(long, value_enum, requires = "preset", conflicts_with = "poses")]
+    framing: Option<FramingName>,
     /// The rig, TOML; the desk of fixtures/ by default.
     #[arg(long, value_name = "FILE.toml")]
     rig: Option<PathBuf>,
@@ -68,6 +72,24 @@ enum PresetName {
     Default,
     /// 80,000 scenes.
     Best,
+}
+
+/// Framings by name.
+#[derive(Clone, Copy, ValueEnum)]
+enum FramingName {
+    /// The whole picture, whose middle the hand is in.
+    Picture,
+    /// A window on the hand.
+    Window,
+}
+
+impl FramingName {
+    fn framing(self) -> Framing {
+        match self {
+            Self::Picture => Framing::Picture,
+            Self::Window => Framing::Window,
+        }
+    }
 }
 
 impl PresetName {
@@ -152,11 +174,14 @@ fn random(arguments: &Arguments, rig: &Rig, hand: &HandShape) -> Result<()> {
 /// Learns as a preset says, of the prior's poses or a file's.
 fn by_preset(preset: Preset, arguments: &Arguments, rig: &Rig, hand: &HandShape) -> Result<()> {
     let samples = arguments.samples.unwrap_or(preset.scenes());
-    let set = match &arguments.poses {
-        Some(path) => sets::own_poses(rig, hand, &files::poses(path)?.poses, samples),
-        None => sets::random(rig, hand, samples, Augment::Yes),
+    let framing = arguments.framing.map_or_else(Framing::default, FramingName::framing);
+    let set = match (&arguments.poses, framing) {
+        (Some(path), _) => sets::own_poses(rig, hand, &files::poses(path)?.poses, samples),
+        (None, Framing::Picture) => sets::random(rig, hand, samples, Augment::Yes),
+        (None, Framing::Window) => sets::placed(rig, hand, samples),
     };
-    stream(&preset.training(), &set, arguments, rig, hand)
+    let training = Training { framing, ..preset.training() };
+    stream(&training, &set, arguments, rig, hand)
 }
 
 /// Learns from scenes that stream by, all of them or a shard.

@@ -7,7 +7,7 @@ use clap::Args;
 use image::{DynamicImage, RgbImage, imageops};
 use phalanx::{
     Estimate, Estimator, Picture, Refiner, Segmenter, Workspace, draw_overlay, draw_silhouette,
-    working_window,
+    draw_window_overlay, working_window,
 };
 use phalanx_hand::HandShape;
 use phalanx_refine::{Doubt, Refinement};
@@ -90,12 +90,12 @@ fn refine(
 ) -> Result<Estimate> {
     let refinement = Refinement { doubt: Some(Doubt::default()), ..Refinement::default() };
     let refiner = Refiner::for_estimator(estimator, refinement)?.with_hand(hand)?;
-    let silhouettes = workspace.silhouettes();
+    let evidence = refiner.evidence_of(workspace)?;
     let hypotheses = match estimator.errors() {
         Some(_) => estimator.hypotheses(&estimate, HYPOTHESES)?,
         None => Vec::new(),
     };
-    let refined = refiner.refine_best(silhouettes, &estimate, &hypotheses)?.swap_remove(0);
+    let refined = refiner.refine_best(&evidence, &estimate, &hypotheses)?.swap_remove(0);
     if !refined.converged {
         doubts.push("the refinement stopped before it settled".to_owned());
     }
@@ -160,20 +160,25 @@ fn overlay(
     workspace: &Workspace,
     doubts: &mut Vec<String>,
 ) -> Result<RgbImage> {
+    let rest = estimator.rig().volume.rest_frame();
     let mut panels = Vec::new();
     for (view, camera) in estimator.rig().cameras.iter().enumerate() {
-        let rest = estimator.rig().volume.rest_frame();
-        let drawn = draw_silhouette(camera, hand, &estimate.pose, &rest)?;
+        let window = workspace.windows().get(view);
+        let drawn_by = window.map_or(camera, |window| &window.camera);
+        let drawn = draw_silhouette(drawn_by, hand, &estimate.pose, &rest)?;
         let estimated = Silhouette::from_mask(&drawn);
         if let Err(reason) = &estimated {
             let camera = &camera.name;
             doubts.push(format!("camera '{camera}': the estimated hand is not drawn: {reason}"));
         }
         let mut canvas = pictures[view].to_rgb8();
-        let window = working_window(canvas.dimensions())?;
-        let observed = &workspace.silhouettes()[view];
-        let rule = estimator.orientation();
-        draw_overlay(&mut canvas, window, observed, rule, estimated.as_ref().ok());
+        let (observed, estimated) = (&workspace.silhouettes()[view], estimated.as_ref().ok());
+        if let Some(window) = window {
+            draw_window_overlay(&mut canvas, window, observed, estimated);
+        } else {
+            let shown = working_window(canvas.dimensions())?;
+            draw_overlay(&mut canvas, shown, observed, estimator.orientation(), estimated);
+        }
         panels.push(canvas);
     }
     Ok(side_by_side(&panels))

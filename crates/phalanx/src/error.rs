@@ -54,9 +54,6 @@ pub enum Error {
     /// The hand is unusable.
     #[error(transparent)]
     Hand(#[from] phalanx_hand::Error),
-    /// An estimator that looks through windows, whose cameras differ from picture to picture.
-    #[error("the model looks through windows; each window has its own evidence to refine by")]
-    RefinesPictures,
     /// The hand could not be fitted to silhouettes.
     #[error(transparent)]
     Refine(#[from] phalanx_refine::Error),

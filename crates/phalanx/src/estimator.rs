@@ -7,6 +7,7 @@ use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
 use phalanx_rvm::ConditionalDensity;
 use phalanx_segmentation::{Forearm, Silhouette};
 
+use crate::global_pose::place;
 use crate::{
     Descriptor, Error, Framing, OrientationRule, Picture, Regression, Result, Window, WindowFinder,
     descriptor,
@@ -160,7 +161,21 @@ impl Estimator {
                 memory.windows.silhouettes(windows, silhouettes)?;
             }
         }
-        self.look_at(silhouettes, memory)
+        let estimate = self.look_at(silhouettes, memory)?;
+        match self.descriptor.sight().framing {
+            Framing::Picture => Ok(estimate),
+            Framing::Window => self.place(estimate, windows),
+        }
+    }
+
+    /// An estimate with the hand where the windows show it that the silhouettes were seen in:
+    /// position, θ_X and θ_Y, which what is seen through a window does not tell. Estimates from
+    /// pictures are placed already.
+    ///
+    /// # Errors
+    /// As of [`initial_global`](crate::initial_global).
+    pub fn place(&self, estimate: Estimate, windows: &[Window]) -> Result<Estimate> {
+        place(&self.rig, &self.hand, estimate, windows)
     }
 
     /// The silhouettes of whole pictures.

@@ -9,7 +9,7 @@ use phalanx_camera::{Camera, Ray, Rig, triangulate};
 use phalanx_hand::{Dof, HandShape, Pose, Primitive, Side};
 use phalanx_segmentation::LocatedHand;
 
-use crate::{Error, Result};
+use crate::{Error, Estimate, Result, Window};
 
 /// A pose whose global part was found from the hands' places in the views.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +18,31 @@ pub struct GlobalStart {
     pub pose: Pose,
     /// Root mean square by which the wrist's rays miss its place, mm; of a single view 0.
     pub miss: f64,
+}
+
+/// How far off a hand so placed usually is, as `cargo xtask eval-global` finds it: the arm's direction
+/// in each of θ_X and θ_Y, radians, and the wrist along each axis, mm.
+const LEAN_STD: f64 = 0.105;
+const POSITION_STD: f64 = 8.0;
+
+/// An estimate whose hand is put where its windows show it.
+pub(crate) fn place(
+    rig: &Rig,
+    hand: &HandShape,
+    estimate: Estimate,
+    windows: &[Window],
+) -> Result<Estimate> {
+    let hands: Vec<Option<LocatedHand>> = windows.iter().map(|window| Some(window.hand)).collect();
+    let pose = initial_global(rig, hand, &estimate.pose, &hands)?.pose;
+    let mut std = estimate.std;
+    for dof in [Dof::ThetaX, Dof::ThetaY] {
+        std[dof.index()] = LEAN_STD;
+    }
+    for dof in [Dof::TX, Dof::TY, Dof::TZ] {
+        std[dof.index()] = POSITION_STD;
+    }
+    let joints = hand.pose(&pose, &rig.volume.rest_frame()).joints;
+    Ok(Estimate { pose, std, joints, ..estimate })
 }
 
 /// Places a hand whose fingers and θ_Z are known roughly, as by regression: position from the

@@ -2,9 +2,8 @@
 
 use faer::Mat;
 use phalanx_hand::{Dof, Pose, Unit};
-use phalanx_refine::Refined;
+use phalanx_refine::{Evidence, Refined};
 use phalanx_rvm::ConditionalDensity;
-use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
 use crate::{
@@ -98,7 +97,7 @@ impl Refiner {
     /// As of [`refine`](Self::refine).
     pub fn refine_hypotheses(
         &self,
-        silhouettes: &[Silhouette],
+        evidence: &[Evidence],
         estimate: &Estimate,
         hypotheses: &[Hypothesis],
     ) -> Result<Vec<Refined>> {
@@ -107,7 +106,7 @@ impl Refiner {
             let std = std::array::from_fn(|dof| {
                 hypothesis.std[dof].max(LEAST_SPREAD * estimate.std[dof])
             });
-            let refined = self.refine(silhouettes, &Estimate { pose, std, ..estimate.clone() })?;
+            let refined = self.refine(evidence, &Estimate { pose, std, ..estimate.clone() })?;
             let width: f64 = std.iter().filter(|&&std| std > 0.0).map(|std| std.ln()).sum();
             let weight = hypothesis.weight.max(1.0 / NEIGHBOURS as f64);
             Ok((refined.energy + width - weight.ln(), refined))

@@ -35,7 +35,7 @@ pub use estimator::{Estimate, Estimator, Workspace};
 pub use global_pose::{GlobalStart, initial_global};
 pub use histograms::{ViewCodebooks, describe_with};
 pub use hypotheses::Hypothesis;
-pub use overlay::{draw_overlay, working_window};
+pub use overlay::{draw_overlay, draw_window_overlay, working_window};
 pub use part::Part;
 pub use picture::{Picture, Segmenter};
 pub use preset::Preset;

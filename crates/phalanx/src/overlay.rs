@@ -5,7 +5,7 @@ use phalanx_segmentation::{CropWindow, Silhouette};
 use phalanx_shape_context::hand_axis;
 
 use crate::outline::trace_outline;
-use crate::{OrientationRule, WORKING_SIZE};
+use crate::{OrientationRule, WORKING_SIZE, Window};
 
 const OBSERVED: Rgb<u8> = Rgb([40, 220, 90]);
 const AXIS: Rgb<u8> = Rgb([255, 210, 0]);
@@ -40,6 +40,27 @@ pub fn draw_overlay(
         let onto = Similarity::between(estimated, observed);
         for piece in estimated.contour.pieces() {
             pen.path(piece, |point| to_canvas(onto.apply(point)), ESTIMATED);
+        }
+    }
+}
+
+/// Draws the contour of a silhouette seen in a window (green) and that of the estimated hand, drawn
+/// through the window's camera (magenta), over the picture that the window looks into.
+pub fn draw_window_overlay(
+    canvas: &mut RgbImage,
+    window: &Window,
+    observed: &Silhouette,
+    estimated: Option<&Silhouette>,
+) {
+    // A window's pixel is about so wide in the picture.
+    let scale = window.hand.length / (0.5 * f64::from(WORKING_SIZE.0));
+    let mut pen = Pen { canvas, width: (scale * 0.6).max(1.0) };
+    for (silhouette, colour) in
+        [Some((observed, OBSERVED)), estimated.map(|own| (own, ESTIMATED))].into_iter().flatten()
+    {
+        for piece in silhouette.contour.pieces() {
+            let shown: Vec<_> = piece.iter().filter_map(|&at| window.to_picture(at)).collect();
+            pen.path(&shown, |point| point, colour);
         }
     }
 }

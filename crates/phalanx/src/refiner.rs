@@ -8,7 +8,9 @@ use phalanx_refine::{
 };
 use phalanx_segmentation::Silhouette;
 
-use crate::{Error, Estimate, Estimator, Framing, Hypothesis, ItemRandom, Result, working_camera};
+use crate::{
+    Error, Estimate, Estimator, Hypothesis, ItemRandom, Result, Workspace, working_camera,
+};
 
 /// Poses from the prior that tell how angles go together.
 const POSTURES: u64 = 2000;
@@ -53,11 +55,8 @@ impl Refiner {
     /// ([`phalanx_hand::coupled_pose`]).
     ///
     /// # Errors
-    /// As of [`new`](Self::new); an estimator that looks through windows.
+    /// As of [`new`](Self::new).
     pub fn for_estimator(estimator: &Estimator, refinement: Refinement) -> Result<Self> {
-        if estimator.descriptor().sight().framing == Framing::Window {
-            return Err(Error::RefinesPictures);
-        }
         let pose = |item| {
             let mut random = ItemRandom::new(0, item);
             coupled_pose(|| random.uniform())
@@ -110,6 +109,19 @@ impl Refiner {
         Ok(evidence.collect::<Result<_, _>>()?)
     }
 
+    /// What the silhouettes of the last estimate tell, in the windows that they were seen in if the
+    /// estimator looks through windows.
+    ///
+    /// # Errors
+    /// As of [`evidence`](Self::evidence).
+    pub fn evidence_of(&self, workspace: &Workspace) -> Result<Vec<Evidence>> {
+        if workspace.windows().is_empty() {
+            return self.evidence(workspace.silhouettes());
+        }
+        let pairs = workspace.windows().iter().zip(workspace.silhouettes());
+        pairs.map(|(window, seen)| window.evidence(seen)).collect()
+    }
+
     /// What is known of a pose once it was estimated: that, and how numbers go together. Numbers that
     /// did not vary where the estimator learnt stay as estimated.
     ///
@@ -122,14 +134,9 @@ impl Refiner {
     /// One frame to calibrate a hand from.
     ///
     /// # Errors
-    /// Silhouettes of another number or size than the cameras', or without a border.
-    pub fn frame(
-        &self,
-        silhouettes: &[Silhouette],
-        estimate: &Estimate,
-    ) -> Result<CalibrationFrame> {
+    /// As of [`prior`](Self::prior).
+    pub fn frame(&self, evidence: Vec<Evidence>, estimate: &Estimate) -> Result<CalibrationFrame> {
         let prior = self.prior(&estimate.pose, &estimate.std)?;
-        let evidence = self.evidence(silhouettes)?;
         Ok(CalibrationFrame { evidence, start: *prior.mean(), prior })
     }
 
@@ -167,27 +174,26 @@ impl Refiner {
     /// As of [`refine`](Self::refine).
     pub fn refine_best(
         &self,
-        silhouettes: &[Silhouette],
+        evidence: &[Evidence],
         estimate: &Estimate,
         hypotheses: &[Hypothesis],
     ) -> Result<Vec<Refined>> {
-        if silhouettes.len() > 1 || hypotheses.is_empty() {
-            let refined = self.refine(silhouettes, estimate)?;
+        if evidence.len() > 1 || hypotheses.is_empty() {
+            let refined = self.refine(evidence, estimate)?;
             if hypotheses.is_empty() || refined.border_px <= APART {
                 return Ok(vec![refined]);
             }
         }
-        self.refine_hypotheses(silhouettes, estimate, hypotheses)
+        self.refine_hypotheses(evidence, estimate, hypotheses)
     }
 
     /// Refines an estimate.
     ///
     /// # Errors
-    /// Silhouettes of another number or size than the cameras', or without a border.
-    pub fn refine(&self, silhouettes: &[Silhouette], estimate: &Estimate) -> Result<Refined> {
+    /// No evidence, or a hand that a camera cannot draw.
+    pub fn refine(&self, evidence: &[Evidence], estimate: &Estimate) -> Result<Refined> {
         let prior = self.prior(&estimate.pose, &estimate.std)?;
-        let evidence = self.evidence(silhouettes)?;
         let start = prior.mean();
-        Ok(self.refinement.run(&self.hand, &self.rest, &evidence, start, &prior)?)
+        Ok(self.refinement.run(&self.hand, &self.rest, evidence, start, &prior)?)
     }
 }

@@ -39,6 +39,13 @@ impl Truth {
     }
 }
 
+/// Mean over those angles of how far a pose is from the truth, degrees.
+pub(crate) fn mean_error_deg(pose: &Pose, truth: &Pose) -> f64 {
+    let angles = active_angles();
+    let off = angles.iter().map(|&dof| (pose[dof] - truth[dof]).abs());
+    off.sum::<f64>().to_degrees() / angles.len() as f64
+}
+
 /// The angles over which errors are averaged: those of the paper's sets.
 pub(crate) fn active_angles() -> Vec<Dof> {
     Dof::ALL.into_iter().filter(|&dof| dof.is_internal() || dof == Dof::ThetaZ).collect()

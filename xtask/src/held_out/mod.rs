@@ -7,7 +7,7 @@ mod masks;
 pub(crate) mod method;
 mod presets;
 pub(crate) mod print;
-mod refined;
+pub(crate) mod refined;
 pub(crate) mod row;
 mod timing;
 
@@ -16,7 +16,7 @@ use std::process::ExitCode;
 
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
-use phalanx::{OrientationRule, Progress, Scenes};
+use phalanx::{Framing, OrientationRule, Progress, Scenes};
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 use serde::Serialize;
@@ -151,11 +151,19 @@ fn rows(
     let (sets, tests) = (training_sets(arguments, ground)?, tests(arguments)?);
     let methods = methods(arguments);
     let presets: Vec<_> = methods.iter().filter_map(|method| method.preset()).collect();
+    let placed = presets.clone();
     let methods = methods.into_iter().filter(|method| method.preset().is_none()).collect();
     let protocol = Protocol { ground, methods, tests, motion: &motion };
     let (learners, mut rows) = protocol.run(&sets, progress)?;
-    let learnt = presets::learn(&presets, ground, progress)?;
+    let pictures = protocol.tests.iter().any(|test| *test != Test::Placed) || masks.is_some();
+    let presets = if pictures { presets } else { Vec::new() };
+    let learnt = presets::learn(&presets, Framing::Picture, ground, progress)?;
     rows.extend(protocol.test_presets(&learnt, progress)?);
+    if protocol.tests.contains(&Test::Placed) {
+        let learnt = presets::learn(&placed, Framing::Window, ground, progress)?;
+        let set = Test::Placed.set(&ground.rig, &ground.hand, &motion);
+        rows.extend(presets::test(&set, &learnt, ground, progress)?);
+    }
     if let Some(masks) = masks {
         rows.extend(masks.test(&learners, ground)?);
         rows.extend(masks.test_presets(&learnt, ground)?);
@@ -200,7 +208,8 @@ impl Protocol<'_> {
     fn test_presets(&self, learnt: &[Learnt], progress: &dyn Progress) -> Result<Vec<Row>> {
         let Self { ground, tests, motion, .. } = self;
         let mut rows = Vec::new();
-        for test in tests.iter().filter(|_| !learnt.is_empty()) {
+        // Those who look at whole pictures expect the hand in their middle.
+        for test in tests.iter().filter(|&&test| test != Test::Placed && !learnt.is_empty()) {
             let set = test.set(&ground.rig, &ground.hand, motion);
             rows.extend(presets::test(&set, learnt, ground, progress)?);
         }

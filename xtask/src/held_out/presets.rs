@@ -2,10 +2,13 @@
 
 use anyhow::{Context, Result};
 use faer::Mat;
+use image::GrayImage;
 use phalanx::{
-    Estimator, Preset, Progress, Refiner, SceneDescriber, Scenes, Shard, Workspace, targets,
+    Estimator, Framing, Picture, Preset, Progress, Refiner, SceneDescriber, Scenes, Shard,
+    Training, Workspace, targets,
 };
 use phalanx_hand::{Dof, Pose};
+use phalanx_refine::{Doubt, Refinement};
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
@@ -13,7 +16,7 @@ use super::Ground;
 use super::errors::Truth;
 use super::refined;
 use super::row::{Outcome, Row};
-use crate::sets::{self, Augment, Set, random};
+use crate::sets::{self, Augment, Set};
 use crate::table1::single_view;
 
 /// How a learnt preset answers.
@@ -27,6 +30,20 @@ pub(crate) enum Answer {
     RefinedOwnHand,
 }
 
+impl Answer {
+    /// Hands are calibrated from whole pictures only.
+    fn is_given(self, framing: Framing) -> bool {
+        framing == Framing::Picture || self != Self::RefinedOwnHand
+    }
+}
+
+/// What the cameras show, as presets look at it.
+enum Frame {
+    Silhouettes(Vec<Silhouette>),
+    /// As large as they are, to be looked at through windows.
+    Masks(Vec<GrayImage>),
+}
+
 /// Scenes from which it is learnt how estimates err, where they are refined.
 const ERROR_SCENES: usize = 4000;
 
@@ -34,11 +51,20 @@ const ERROR_SCENES: usize = 4000;
 /// number of hands that a test shows in turn.
 const REFINED_EVERY: usize = 5;
 
+/// What is to be learnt.
+struct Asked {
+    preset: Preset,
+    answers: Vec<Answer>,
+    framing: Framing,
+    views: Vec<usize>,
+}
+
 /// A preset learnt from some of the cameras.
 pub(crate) struct Learnt {
     answers: Vec<Answer>,
     refiner: Refiner,
     preset: Preset,
+    train: &'static str,
     samples: usize,
     /// The cameras' numbers in the whole rig.
     views: Vec<usize>,
@@ -58,9 +84,11 @@ pub(crate) fn name(preset: Preset, answer: Answer) -> &'static str {
     }
 }
 
-/// Learns presets through one view (the top), two next to each other and all.
+/// Learns presets through one view (the top), two next to each other and all, looking at whole
+/// pictures or through windows.
 pub(crate) fn learn(
     asked: &[(Preset, Answer)],
+    framing: Framing,
     ground: &Ground,
     progress: &dyn Progress,
 ) -> Result<Vec<Learnt>> {
@@ -68,8 +96,11 @@ pub(crate) fn learn(
     for preset in Preset::ALL {
         let answers: Vec<Answer> =
             asked.iter().filter(|(asked, _)| *asked == preset).map(|&(_, answer)| answer).collect();
+        let answers: Vec<Answer> =
+            answers.into_iter().filter(|answer| answer.is_given(framing)).collect();
         for views in views(ground).into_iter().filter(|_| !answers.is_empty()) {
-            learnt.push(Learnt::new(preset, answers.clone(), views, ground, progress)?);
+            let asked = Asked { preset, answers: answers.clone(), framing, views };
+            learnt.push(Learnt::new(asked, ground, progress)?);
         }
     }
     Ok(learnt)
@@ -88,32 +119,33 @@ fn views(ground: &Ground) -> Vec<Vec<usize>> {
 }
 
 impl Learnt {
-    fn new(
-        preset: Preset,
-        answers: Vec<Answer>,
-        views: Vec<usize>,
-        ground: &Ground,
-        progress: &dyn Progress,
-    ) -> Result<Self> {
+    fn new(asked: Asked, ground: &Ground, progress: &dyn Progress) -> Result<Self> {
+        let Asked { preset, answers, framing, views } = asked;
         let names: Vec<&str> =
             views.iter().map(|&view| ground.rig.cameras[view].name.as_str()).collect();
         let rig = ground.rig.select(&names)?;
-        let set = random(&rig, &ground.hand, preset.scenes(), Augment::Yes);
-        let training = preset.training();
+        let set = match framing {
+            Framing::Picture => sets::random(&rig, &ground.hand, preset.scenes(), Augment::Yes),
+            Framing::Window => sets::placed(&rig, &ground.hand, preset.scenes()),
+        };
+        let training = Training { framing, ..preset.training() };
         let part = training.shard(&rig, &ground.hand, &set, Shard::WHOLE, progress)?;
         let samples = set.count() - part.left_out();
         progress.begin("fit the regressor", 1);
         let mut estimator = part.finish()?;
         progress.step();
-        if refines(&answers) {
+        // Through windows hypotheses would be of the digits alone, and have to be placed.
+        if refines(&answers) && framing == Framing::Picture {
             let fresh = sets::fresh(&rig, &ground.hand, ERROR_SCENES, Augment::Yes);
             estimator = estimator.learn_errors(&fresh, progress)?;
         }
         let mean = Dof::ALL.map(|dof| {
             set.poses.iter().map(|pose| pose[dof]).sum::<f64>() / set.poses.len() as f64
         });
-        let refiner = refined::refiner(&estimator, ground)?;
-        Ok(Self { answers, refiner, preset, samples, views, estimator, mean: Pose(mean) })
+        let refinement = Refinement { doubt: Some(Doubt::default()), ..Refinement::default() };
+        let refiner = refined::refiner(&estimator, ground, refinement)?;
+        let mean = Pose(mean);
+        Ok(Self { answers, refiner, preset, train: set.name, samples, views, estimator, mean })
     }
 
     fn refines(&self) -> bool {
@@ -128,18 +160,29 @@ impl Learnt {
     /// One pose for each answer; `own` is the refiner with the hand calibrated.
     fn poses(
         &self,
-        silhouettes: &[Silhouette],
+        frame: &Frame,
         own: Option<&Refiner>,
         workspace: &mut Workspace,
     ) -> Result<Vec<Pose>> {
-        let seen = self.of_views(silhouettes);
-        let answers = self.answers.iter().map(|answer| match answer {
-            Answer::Estimate => Ok(self.estimator.estimate_silhouettes(&seen, workspace)?.pose),
-            Answer::Refined => refined::refine(&self.estimator, &self.refiner, &seen, workspace),
-            Answer::RefinedOwnHand => {
-                let refiner = own.context("the hand was not calibrated")?;
-                refined::refine(&self.estimator, refiner, &seen, workspace)
+        let (estimate, evidence, most) = match frame {
+            Frame::Silhouettes(all) => {
+                let seen = self.of_views(all);
+                let estimate = self.estimator.estimate_silhouettes(&seen, workspace)?;
+                (estimate, self.refiner.evidence(&seen)?, refined::HYPOTHESES)
             }
+            Frame::Masks(all) => {
+                let pictures: Vec<Picture<'_>> =
+                    self.views.iter().map(|&view| Picture::Mask(&all[view])).collect();
+                let estimate = self.estimator.estimate(&pictures, workspace)?;
+                (estimate, self.refiner.evidence_of(workspace)?, 0)
+            }
+        };
+        let refine =
+            |refiner| refined::refine(&self.estimator, refiner, &estimate, &evidence, most);
+        let answers = self.answers.iter().map(|answer| match answer {
+            Answer::Estimate => Ok(estimate.pose),
+            Answer::Refined => refine(&self.refiner),
+            Answer::RefinedOwnHand => refine(own.context("the hand was not calibrated")?),
         });
         answers.collect()
     }
@@ -168,7 +211,7 @@ impl Learnt {
         let (estimates, guess) = (targets(estimates), targets(&[self.mean]));
         let guesses = Mat::from_fn(guess.nrows(), estimates.ncols(), |dof, _| guess[(dof, 0)]);
         let outcome = Outcome {
-            train: "random_augmented",
+            train: self.train,
             train_samples: self.samples,
             method: name(self.preset, answer),
             views: self.views.len(),
@@ -187,24 +230,29 @@ pub(crate) fn test(
 ) -> Result<Vec<Row>> {
     let own = learnt.iter().map(|learnt| learnt.own_hands(set, ground, progress));
     let own = own.collect::<Result<Vec<_>>>()?;
-    let describer = SceneDescriber::new(&ground.rig, ground.rule)?;
-    let refined = learnt.iter().any(Learnt::refines);
-    let every = if refined { REFINED_EVERY } else { 1 };
+    let Some(first) = learnt.first() else { return Ok(Vec::new()) };
+    let sight = first.estimator.descriptor().sight();
+    let describer = SceneDescriber::new(&ground.rig, sight)?;
+    let every = if learnt.iter().any(Learnt::refines) { REFINED_EVERY } else { 1 };
     let numbers: Vec<usize> = (0..set.count()).step_by(every).collect();
     progress.begin(&format!("see {}", set.name), numbers.len());
-    let estimates = |(describer, workspace): &mut (SceneDescriber, Workspace), &number: &usize| {
+    let look = |(describer, workspace): &mut (SceneDescriber, Workspace), &number: &usize| {
         let scene = set.scene(number);
-        let seen = describer.silhouettes(&scene).ok().map(|seen| seen.cloned().collect());
         progress.step();
-        let seen: Vec<Silhouette> = seen?;
+        let frame = match sight.framing {
+            Framing::Picture => {
+                Frame::Silhouettes(describer.silhouettes(&scene).ok()?.cloned().collect())
+            }
+            Framing::Window => Frame::Masks(describer.masks(&scene).ok()?.to_vec()),
+        };
         let each = learnt
             .iter()
             .zip(&own)
-            .map(|(learnt, own)| learnt.poses(&seen, own.get(number % set.hands()), workspace));
+            .map(|(learnt, own)| learnt.poses(&frame, own.get(number % set.hands()), workspace));
         Some((scene, each.collect::<Result<Vec<_>>>().ok()?))
     };
     let memory = || (describer.clone(), Workspace::default());
-    let estimated: Vec<_> = numbers.par_iter().map_init(memory, estimates).flatten().collect();
+    let estimated: Vec<_> = numbers.par_iter().map_init(memory, look).flatten().collect();
     if estimated.len() < numbers.len() {
         let (left_out, all) = (numbers.len() - estimated.len(), numbers.len());
         eprintln!("{}: {left_out} of {all} cannot be estimated by every preset", set.name);
@@ -231,7 +279,8 @@ pub(crate) fn test_masks(
     let estimates = |frame: &Vec<Silhouette>| -> Result<Vec<Vec<Pose>>> {
         let mut workspace = Workspace::default();
         let each = learnt.iter().zip(&own);
-        each.map(|(learnt, own)| learnt.poses(frame, own.as_ref(), &mut workspace)).collect()
+        let frame = Frame::Silhouettes(frame.clone());
+        each.map(|(learnt, own)| learnt.poses(&frame, own.as_ref(), &mut workspace)).collect()
     };
     let estimated = frames.par_iter().map(estimates).collect::<Result<Vec<_>>>()?;
     rows("masks", learnt, estimated.into_iter(), truth, ground)

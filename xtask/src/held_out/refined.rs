@@ -1,10 +1,10 @@
 //! The default preset's estimates, refined: with the hand as given, and after calibrating it.
 
 use anyhow::Result;
-use phalanx::{Estimator, Progress, Refiner, SceneDescriber, Scenes, Workspace};
+use phalanx::{Estimate, Estimator, Progress, Refiner, SceneDescriber, Scenes, Workspace};
 use phalanx_hand::Pose;
 use phalanx_refine::{
-    Calibration, CalibrationFrame, CameraDoubt, Doubt, HandDoubt, Moves, Refinement,
+    Calibration, CalibrationFrame, CameraDoubt, Doubt, Evidence, HandDoubt, Moves, Refinement,
 };
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
@@ -15,30 +15,36 @@ use crate::sets::{self, Augment, Set};
 /// Poses that tell how angles go together.
 const POSTURES: usize = 2000;
 /// Hypotheses about each estimate.
-const HYPOTHESES: usize = 5;
+pub(crate) const HYPOTHESES: usize = 5;
 /// Frames from which each hand is calibrated.
 const CALIBRATION_FRAMES: usize = 20;
 
 /// How far a calibrated hand may still be from the true one.
 const CALIBRATED: HandDoubt = HandDoubt { size: 0.005, each: 0.02 };
 
-/// Refines with the mean hand, which may be doubted as the cameras may.
-pub(crate) fn refiner(estimator: &Estimator, ground: &Ground) -> Result<Refiner> {
+/// Refines with the hand as given.
+pub(crate) fn refiner(
+    estimator: &Estimator,
+    ground: &Ground,
+    refinement: Refinement,
+) -> Result<Refiner> {
     let postures = sets::fresh(estimator.rig(), &ground.hand, POSTURES, Augment::No).poses;
-    let refinement = Refinement { doubt: Some(Doubt::default()), ..Refinement::default() };
     Ok(Refiner::new(estimator.rig(), &ground.hand, &postures, refinement)?)
 }
 
-/// The refined pose of one frame.
+/// The refined pose of one frame; `most` hypotheses about its estimate are tried, if need be.
 pub(crate) fn refine(
     estimator: &Estimator,
     refiner: &Refiner,
-    silhouettes: &[Silhouette],
-    workspace: &mut Workspace,
+    estimate: &Estimate,
+    evidence: &[Evidence],
+    most: usize,
 ) -> Result<Pose> {
-    let estimate = estimator.estimate_silhouettes(silhouettes, workspace)?;
-    let hypotheses = estimator.hypotheses(&estimate, HYPOTHESES)?;
-    Ok(refiner.refine_best(silhouettes, &estimate, &hypotheses)?[0].pose)
+    let hypotheses = match most {
+        0 => Vec::new(),
+        most => estimator.hypotheses(estimate, most)?,
+    };
+    Ok(refiner.refine_best(evidence, estimate, &hypotheses)?[0].pose)
 }
 
 /// Calibrates each hand of a test from other frames of it; a refiner for each.
@@ -81,7 +87,7 @@ fn calibrated(
     let mut workspace = Workspace::default();
     let frame = |seen: &Vec<Silhouette>| -> Result<CalibrationFrame> {
         let estimate = estimator.estimate_silhouettes(seen, &mut workspace)?;
-        Ok(refiner.frame(seen, &estimate)?)
+        Ok(refiner.frame(refiner.evidence(seen)?, &estimate)?)
     };
     let frames = frames.iter().map(frame).collect::<Result<Vec<_>>>()?;
     let doubt = Doubt::default();

@@ -12,7 +12,6 @@ use phalanx_refine::{
 use rayon::prelude::*;
 
 use super::Seen;
-use crate::global_pose::start;
 use crate::sets;
 
 /// Frames that the hand is calibrated on, evenly spaced.
@@ -56,7 +55,7 @@ impl Learnt {
     /// The estimate of a frame, and what is to be refined.
     pub(super) fn start(&self, seen: &Seen, workspace: &mut Workspace) -> Result<Start> {
         let estimate = self.estimator.estimate_silhouettes(&seen.silhouettes, workspace)?;
-        let estimate = start(&self.estimator, &estimate, &seen.windows)?;
+        let estimate = self.estimator.place(estimate, &seen.windows)?;
         let pairs = seen.windows.iter().zip(&seen.silhouettes);
         let evidence = pairs.map(|(window, silhouette)| window.evidence(silhouette));
         let evidence = evidence.collect::<Result<_, _>>()?;

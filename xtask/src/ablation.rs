@@ -1,0 +1,217 @@
+//! `cargo xtask ablation`: what each part of the default preset and of refinement gives.
+
+use anyhow::Result;
+use clap::Args;
+use comfy_table::{Table, presets};
+use phalanx::{
+    Description, Estimator, Framing, LearntMetric, OrientationRule, Picture, Preset, Progress,
+    Regressor, SceneDescriber, Scenes, Shard, Training, Workspace,
+};
+use phalanx_refine::{Doubt, Refinement};
+use phalanx_segmentation::Silhouette;
+use rayon::prelude::*;
+
+use crate::held_out::errors::mean_error_deg;
+use crate::held_out::{Ground, refined};
+use crate::sets::{self, Augment, Set, Test};
+use crate::{files, progress};
+
+const PAGE: &str = "docs/ablation.md";
+const PRESET: Preset = Preset::Balanced;
+const TESTS: [Test; 2] = [Test::Unseen, Test::All];
+/// Of so many samples of a test one is looked at; shares no factor with the hands in `all`.
+const EVERY: usize = 9;
+/// Scenes from which it is learnt how estimates err.
+const ERROR_SCENES: usize = 4000;
+/// Scenes that are learnt from where there are few.
+const FEW: usize = 2000;
+
+#[derive(Args)]
+pub(crate) struct Arguments {}
+
+/// How an estimator is learnt.
+struct Learning {
+    training: Training,
+    scenes: usize,
+    augment: Augment,
+}
+
+/// How its estimates are refined.
+#[derive(Clone)]
+struct Refining {
+    refinement: Refinement,
+    hypotheses: usize,
+    hand: Hand,
+}
+
+/// The hand that is refined with.
+#[derive(Clone, Copy, PartialEq)]
+enum Hand {
+    Mean,
+    Calibrated,
+}
+
+/// Mean errors over the active angles in a test, degrees.
+struct Errors {
+    estimated: f64,
+    refined: f64,
+}
+
+/// Writes the page and prints it.
+pub(crate) fn run(_: &Arguments) -> Result<()> {
+    let ground = Ground {
+        rig: files::rig(None)?,
+        hand: files::hand(None)?,
+        rule: OrientationRule::default(),
+    };
+    let bar = progress::Bar::new();
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN).set_header([
+        "",
+        "unseen",
+        "unseen, refined",
+        "all",
+        "all, refined",
+    ]);
+    let mut push = |name: &str, estimator: &Estimator, refining: &Refining| -> Result<()> {
+        let mut row = vec![name.to_owned()];
+        for test in TESTS {
+            let set = test.set(&ground.rig, &ground.hand, &[]);
+            let errors = errors(estimator, refining, &set, &ground, &bar)?;
+            row.extend([errors.estimated, errors.refined].map(|error| format!("{error:.2}")));
+        }
+        table.add_row(row);
+        Ok(())
+    };
+    let whole = Refining::whole();
+    let estimator = Learning::whole().run(&ground, &bar)?;
+    push("the default preset, refined with the mean hand", &estimator, &whole)?;
+    for (name, refining) in refinings() {
+        push(name, &estimator, &refining)?;
+    }
+    for (name, learning) in learnings() {
+        push(name, &learning.run(&ground, &bar)?, &whole)?;
+    }
+    drop(bar);
+    let page = format!(
+        "# What each part gives\n\n\
+         Written by `cargo xtask ablation`: mean absolute error over the 21 active angles, degrees, three\n\
+         views, every {EVERY}th sample of each test. Each line changes one thing of the first.\n\n{table}\n"
+    );
+    files::write_whole(&files::in_repository(PAGE), page.as_bytes())?;
+    files::print(&page)
+}
+
+/// What is changed in refining.
+fn refinings() -> Vec<(&'static str, Refining)> {
+    let whole = Refining::whole();
+    let Refining { refinement, .. } = &whole;
+    let with = |refinement: Refinement| Refining { refinement, ..whole.clone() };
+    let no_cameras = refinement.doubt.map(|doubt| Doubt { cameras: None, ..doubt });
+    let one_level = refinement.levels.last().copied().into_iter().collect();
+    vec![
+        ("the hand calibrated", Refining { hand: Hand::Calibrated, ..whole.clone() }),
+        ("one hypothesis", Refining { hypotheses: 0, ..whole.clone() }),
+        ("no search of postures", with(Refinement { retries: 0, ..refinement.clone() })),
+        ("no doubt of hand or cameras", with(Refinement { doubt: None, ..refinement.clone() })),
+        ("no doubt of the cameras", with(Refinement { doubt: no_cameras, ..refinement.clone() })),
+        ("no margins", with(Refinement { margin: 1e-3, ..refinement.clone() })),
+        ("at once fine", with(Refinement { levels: one_level, ..refinement.clone() })),
+    ]
+}
+
+/// What is changed in learning.
+fn learnings() -> Vec<(&'static str, Learning)> {
+    let whole = Learning::whole;
+    let training = |change: fn(&mut Training)| {
+        let mut learning = whole();
+        change(&mut learning.training);
+        learning
+    };
+    vec![
+        ("few scenes: 2,000", Learning { scenes: FEW, ..whole() }),
+        ("clean scenes", Learning { augment: Augment::No, ..whole() }),
+        ("coding by counts", training(|own| own.description = Description::Counts)),
+        (
+            "one distance for all digits",
+            training(|own| {
+                if let Regressor::LearntMetric(LearntMetric { regression, .. }) = &own.regressor {
+                    own.regressor = Regressor::Nystrom(regression.clone());
+                }
+            }),
+        ),
+        ("through windows", training(|own| own.framing = Framing::Window)),
+    ]
+}
+
+impl Learning {
+    /// The preset's.
+    fn whole() -> Self {
+        Self { training: PRESET.training(), scenes: PRESET.scenes(), augment: Augment::Yes }
+    }
+
+    fn run(&self, ground: &Ground, progress: &dyn Progress) -> Result<Estimator> {
+        let Ground { rig, hand, .. } = ground;
+        let set = sets::random(rig, hand, self.scenes, self.augment);
+        let part = self.training.shard(rig, hand, &set, Shard::WHOLE, progress)?;
+        progress.begin("fit the regressor", 1);
+        let estimator = part.finish()?;
+        progress.step();
+        let fresh = sets::fresh(rig, hand, ERROR_SCENES, self.augment);
+        Ok(estimator.learn_errors(&fresh, progress)?)
+    }
+}
+
+impl Refining {
+    fn whole() -> Self {
+        Self {
+            refinement: Refinement { doubt: Some(Doubt::default()), ..Refinement::default() },
+            hypotheses: refined::HYPOTHESES,
+            hand: Hand::Mean,
+        }
+    }
+}
+
+fn errors(
+    estimator: &Estimator,
+    refining: &Refining,
+    set: &Set<'_>,
+    ground: &Ground,
+    progress: &dyn Progress,
+) -> Result<Errors> {
+    let refiner = refined::refiner(estimator, ground, refining.refinement.clone())?;
+    let own = match refining.hand {
+        Hand::Mean => vec![refiner],
+        Hand::Calibrated => {
+            let views: Vec<usize> = (0..ground.rig.cameras.len()).collect();
+            refined::own_hands(estimator, &refiner, &views, set, ground, progress)?
+        }
+    };
+    let describer = SceneDescriber::new(&ground.rig, estimator.descriptor().sight())?;
+    let numbers: Vec<usize> = (0..set.count()).step_by(EVERY).collect();
+    progress.begin(&format!("refine {}", set.name), numbers.len());
+    let memory = || (describer.clone(), Workspace::default());
+    let look = |(describer, workspace): &mut (SceneDescriber, Workspace), &number: &usize| {
+        let scene = set.scene(number);
+        let refiner = &own[number % set.hands() % own.len()];
+        let (estimate, evidence, most) = match estimator.descriptor().sight().framing {
+            Framing::Picture => {
+                let seen: Vec<Silhouette> = describer.silhouettes(&scene)?.cloned().collect();
+                let estimate = estimator.estimate_silhouettes(&seen, workspace)?;
+                (estimate, refiner.evidence(&seen)?, refining.hypotheses)
+            }
+            Framing::Window => {
+                let masks = describer.masks(&scene)?;
+                let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
+                // Hypotheses are of the digits alone, and would have to be placed.
+                (estimator.estimate(&pictures, workspace)?, refiner.evidence_of(workspace)?, 0)
+            }
+        };
+        let refined = refined::refine(estimator, refiner, &estimate, &evidence, most)?;
+        progress.step();
+        Ok([estimate.pose, refined].map(|pose| mean_error_deg(&pose, &scene.pose)))
+    };
+    let errors: Vec<[f64; 2]> = numbers.par_iter().map_init(memory, look).collect::<Result<_>>()?;
+    let mean = |k: usize| errors.iter().map(|both| both[k]).sum::<f64>() / errors.len() as f64;
+    Ok(Errors { estimated: mean(0), refined: mean(1) })
+}
