@@ -17,9 +17,9 @@ use crate::{Columns, Error, Fit, Kernel, Report, Result, Width};
 ///
 /// It is climbed as [`Tipping`](crate::Tipping) is: each step adds, re-estimates or deletes the one
 /// column that raises the evidence of all targets together the most, by rank-one updates that all
-/// targets share, and the noise of every target then follows in closed form. The trace holds the
-/// log evidence in nats after each step, of the standardised targets that vary; it never falls. An
-/// unpenalised bias stands beside the columns.
+/// targets share, or gives every target the noise at which the evidence is greatest. The trace holds
+/// the log evidence of all standardised targets that vary, as `Tipping`'s do. An unpenalised bias
+/// stands beside the columns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MultivariateRvm {
@@ -31,8 +31,14 @@ pub struct MultivariateRvm {
     /// Least noise variance, as a share of each target's variance, in (0, 1]: data without noise
     /// would drive it to zero.
     pub noise_floor: f64,
+    /// Nats that each column kept must add to the evidence; at least 0. Columns that add next to
+    /// nothing cost time in every prediction.
+    pub price: f64,
     /// Steps that gain no more than this, in nats, are not taken; above 0.
     pub tolerance: f64,
+    /// Climbs after the first, each from the best so far without some columns that neighbour each
+    /// other: more of them find more evidence.
+    pub restarts: usize,
     /// Most steps, at least 1.
     pub max_iterations: usize,
 }
@@ -43,8 +49,10 @@ impl Default for MultivariateRvm {
             kernel: Kernel::Gaussian(Width::Scatter(1.0)),
             most: None,
             noise_floor: 1e-4,
+            price: 0.02,
             tolerance: 1e-3,
-            max_iterations: 10_000,
+            restarts: 0,
+            max_iterations: 100_000,
         }
     }
 }
@@ -97,12 +105,12 @@ impl MultivariateRvm {
     }
 
     fn ascent(&self) -> Result<Ascent> {
-        let &Self { most, noise_floor, tolerance, max_iterations, .. } = self;
+        let &Self { most, noise_floor, price, tolerance, restarts, max_iterations, .. } = self;
         if most == Some(0) {
             return Err(Error::Parameter { name: "most", value: 0.0, requirement: "at least 1" });
         }
         let most = most.unwrap_or(usize::MAX);
-        let ascent = Ascent { noise_floor, tolerance, max_iterations, most };
+        let ascent = Ascent { noise_floor, price, tolerance, max_iterations, restarts, most };
         ascent.check()?;
         Ok(ascent)
     }
