@@ -114,6 +114,9 @@ pub enum Error {
         /// Kernel of the columns.
         columns: Kernel,
     },
+    /// Widths can be learnt of Gaussians only.
+    #[error("a linear kernel has no width to learn")]
+    NoWidth,
     /// The columns of a cascade's second pass read a feature that its first did not select.
     #[error("the columns read feature {feature}, which the first pass did not select")]
     NotSelected {

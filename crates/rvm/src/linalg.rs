@@ -156,3 +156,17 @@ pub(crate) fn subtract_products(y: &mut [f64], c: &[f64], x: &[&[f64]]) {
         axpy(y, -c, x);
     }
 }
+
+/// Subtracts its mean from each column; returns the means.
+pub(crate) fn centre(columns: &mut Mat<f64>) -> Vec<f64> {
+    (0..columns.ncols())
+        .map(|j| {
+            let column = columns.col_as_slice_mut(j);
+            let mean = column.iter().sum::<f64>() / column.len() as f64;
+            for value in &mut *column {
+                *value -= mean;
+            }
+            mean
+        })
+        .collect()
+}

@@ -71,6 +71,15 @@ impl MultivariateRvm {
     }
 
     fn solve(&self, equations: &dyn Equations) -> Result<Fit> {
+        Ok(self.resume(equations, &Vectors::default())?.0)
+    }
+
+    /// Climbs from vectors that are known to be good; returns those that it ends with too.
+    pub(crate) fn resume(
+        &self,
+        equations: &dyn Equations,
+        vectors: &Vectors,
+    ) -> Result<(Fit, Vectors)> {
         let ascent = self.ascent()?;
         let (gram, correlations) = (equations.gram(), equations.correlations());
         let energies = equations.energies();
@@ -78,16 +87,23 @@ impl MultivariateRvm {
         let correlations =
             Mat::from_fn(gram.ncols(), varying.len(), |k, v| correlations[(k, varying[v])]);
         let of_varying: Vec<f64> = varying.iter().map(|&j| energies[j]).collect();
-        let (evidence, trace) = ascent.run(Targets {
+        let mut start = ascent.start(Targets {
             gram: &gram,
             correlations: correlations.as_ref(),
             energies: &of_varying,
             freedom: equations.samples() as f64 - 1.0,
         })?;
+        if !vectors.columns.is_empty() {
+            start = start.resume(&vectors.columns, &vectors.alpha)?;
+        }
+        let (evidence, trace) = ascent.run(start)?;
         let mut noise = vec![0.0; energies.len()];
         for (&j, variance) in varying.iter().zip(evidence.noise()) {
             noise[j] = variance.sqrt();
         }
+        let (columns, alpha) = evidence.active();
+        let (columns, alpha) = (columns.to_vec(), alpha.to_vec());
+        let found = Vectors { columns, alpha, evidence: evidence.value() };
         let (active, mu, factor) = evidence.into_posterior()?;
         let mut kept = active.clone();
         kept.sort_unstable();
@@ -101,7 +117,7 @@ impl MultivariateRvm {
         let factor = Factor::pack(active.iter().map(|&k| place(k)).collect(), factor.as_ref());
         let posterior = Posterior::Weights(vec![factor]);
         let model = equations::model(equations, &kept, weights.as_ref(), &noise, posterior);
-        Ok(Fit { model, report: Report::new(vec![trace], None) })
+        Ok((Fit { model, report: Report::new(vec![trace], None) }, found))
     }
 
     fn ascent(&self) -> Result<Ascent> {
@@ -114,4 +130,13 @@ impl MultivariateRvm {
         ascent.check()?;
         Ok(ascent)
     }
+}
+
+/// Relevant columns and their precisions relative to the noise.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Vectors {
+    pub(crate) columns: Vec<usize>,
+    pub(crate) alpha: Vec<f64>,
+    /// The log evidence that they give, nats.
+    pub(crate) evidence: f64,
 }

@@ -71,12 +71,13 @@ impl Tipping {
                     let trace = Trace { converged: true, objective: Vec::new() };
                     return Ok((Row::constant(), trace));
                 }
-                let (evidence, trace) = ascent.run(Targets {
+                let start = ascent.start(Targets {
                     gram: &gram,
                     correlations: correlations.as_ref().subcols(j, 1),
                     energies: &energies[j..=j],
                     freedom: design.samples() as f64 - 1.0,
                 })?;
+                let (evidence, trace) = ascent.run(start)?;
                 Ok((Row::new(evidence)?, trace))
             })
             .collect::<Result<_>>()?;

@@ -43,11 +43,15 @@ impl Ascent {
         })
     }
 
-    /// Climbs from no column, and then again from the best so far without some neighbours, which
+    /// No column is active.
+    pub(crate) fn start<'a>(&self, targets: Targets<'a>) -> Result<Evidence<'a>> {
+        Evidence::new(targets, self.noise_floor, self.most, self.price)
+    }
+
+    /// Climbs from where it is put, and then again from the best so far without some neighbours, which
     /// finds others in their place (iterated local search: Lourenço, Martin and Stützle 2003).
     /// One column at a time ends where no change of one column gains, of which there are many.
-    pub(crate) fn run<'a>(&self, targets: Targets<'a>) -> Result<(Evidence<'a>, Trace)> {
-        let mut best = Evidence::new(targets, self.noise_floor, self.most, self.price)?;
+    pub(crate) fn run<'a>(&self, mut best: Evidence<'a>) -> Result<(Evidence<'a>, Trace)> {
         let (mut objective, mut left) = (Vec::new(), self.max_iterations);
         let mut converged = self.climb(&mut best, &mut left, |value| objective.push(value))?;
         for round in 0..self.restarts {

@@ -113,6 +113,23 @@ impl<'a> Evidence<'a> {
         Ok(evidence)
     }
 
+    /// Starts with these columns active, at these precisions and the noise that goes with them.
+    pub(crate) fn resume(mut self, active: &[usize], alpha: &[f64]) -> Result<Self> {
+        self.active = active.to_vec();
+        self.alpha = alpha.to_vec();
+        for (i, &column) in active.iter().enumerate() {
+            self.position[column] = Some(i);
+        }
+        self.refresh()?;
+        self.update_noise();
+        Ok(self)
+    }
+
+    /// The active columns and their precisions.
+    pub(crate) fn active(&self) -> (&[usize], &[f64]) {
+        (&self.active, &self.alpha)
+    }
+
     /// Log evidence of all targets together, nats.
     pub(crate) fn value(&self) -> f64 {
         let normal: f64 = self

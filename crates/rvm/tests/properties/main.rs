@@ -6,6 +6,7 @@ mod conditional;
 mod equivariance;
 mod forward;
 mod kernel_ridge;
+mod learnt_widths;
 mod metric;
 mod multivariate;
 mod nystrom;
