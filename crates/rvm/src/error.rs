@@ -114,6 +114,9 @@ pub enum Error {
         /// Kernel of the columns.
         columns: Kernel,
     },
+    /// Only a model with Gaussians and a posterior over their weights can be healed.
+    #[error("the model has no Gaussians with a posterior over their weights")]
+    NotSparse,
     /// Widths can be learnt of Gaussians only.
     #[error("a linear kernel has no width to learn")]
     NoWidth,

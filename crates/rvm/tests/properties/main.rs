@@ -5,6 +5,7 @@ mod bridges;
 mod conditional;
 mod equivariance;
 mod forward;
+mod healed;
 mod kernel_ridge;
 mod learnt_widths;
 mod metric;
