@@ -114,6 +114,12 @@ pub enum Error {
         /// Kernel of the columns.
         columns: Kernel,
     },
+    /// A name that C does not take.
+    #[error("{name:?} is no C identifier")]
+    Identifier {
+        /// The name.
+        name: String,
+    },
     /// Only a model with Gaussians and a posterior over their weights can be healed.
     #[error("the model has no Gaussians with a posterior over their weights")]
     NotSparse,

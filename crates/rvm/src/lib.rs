@@ -9,6 +9,7 @@ mod design;
 mod equations;
 mod error;
 mod evidence;
+mod export;
 mod forward;
 mod healed;
 mod kernel;

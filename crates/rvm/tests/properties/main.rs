@@ -4,6 +4,7 @@ mod bad_input;
 mod bridges;
 mod conditional;
 mod equivariance;
+mod export;
 mod forward;
 mod healed;
 mod kernel_ridge;
