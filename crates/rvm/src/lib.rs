@@ -49,7 +49,7 @@ pub use nystrom::{Deviation, Nystrom, Penalty};
 pub use principal::Block;
 pub use projected::Projected;
 pub use projection::{Projection, ProjectionParts};
-pub use report::{Fit, Report, Trace};
+pub use report::{Fit, Progress, Report, Trace};
 pub use ridge::Ridge;
 pub use standardiser::Standardiser;
 pub use sums::{Sums, SumsParts};

@@ -8,7 +8,7 @@ use crate::evidence::{Ascent, Targets};
 use crate::model::{Factor, Posterior};
 use crate::problem::Problem;
 use crate::sums::{Summed, Sums};
-use crate::{Columns, Error, Fit, Kernel, Report, Result, Width};
+use crate::{Columns, Error, Fit, Kernel, Progress, Report, Result, Width};
 
 /// The multivariate relevance vector machine (Thayananthan, Navaratnam, Stenger, Torr and Cipolla
 /// 2006) in the fast form of Ha and Zhang (2017, arXiv 1704.05041): the targets share each
@@ -60,18 +60,26 @@ impl Default for MultivariateRvm {
 impl MultivariateRvm {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
+        self.fit_observed(x, y, &|_| ())
+    }
+
+    /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step.
+    pub fn fit_observed(
+        &self,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        observe: &dyn Fn(Progress),
+    ) -> Result<Fit> {
         let problem = Problem::new(x, y)?;
-        self.solve(&Design::full(&problem, self.kernel)?)
+        let design = Design::full(&problem, self.kernel)?;
+        Ok(self.resume(&design, &Vectors::default(), observe)?.0)
     }
 
     /// Fits sums over columns of the same kernel.
     pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
         columns.check_kernel(self.kernel)?;
-        self.solve(&Summed::new(columns, sums)?)
-    }
-
-    fn solve(&self, equations: &dyn Equations) -> Result<Fit> {
-        Ok(self.resume(equations, &Vectors::default())?.0)
+        let summed = Summed::new(columns, sums)?;
+        Ok(self.resume(&summed, &Vectors::default(), &|_| ())?.0)
     }
 
     /// Climbs from vectors that are known to be good; returns those that it ends with too.
@@ -79,6 +87,7 @@ impl MultivariateRvm {
         &self,
         equations: &dyn Equations,
         vectors: &Vectors,
+        observe: &dyn Fn(Progress),
     ) -> Result<(Fit, Vectors)> {
         let ascent = self.ascent()?;
         let (gram, correlations) = (equations.gram(), equations.correlations());
@@ -96,7 +105,7 @@ impl MultivariateRvm {
         if !vectors.columns.is_empty() {
             start = start.resume(&vectors.columns, &vectors.alpha)?;
         }
-        let (evidence, trace) = ascent.run(start)?;
+        let (evidence, trace) = ascent.run(start, observe)?;
         let mut noise = vec![0.0; energies.len()];
         for (&j, variance) in varying.iter().zip(evidence.noise()) {
             noise[j] = variance.sqrt();

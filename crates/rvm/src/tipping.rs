@@ -8,7 +8,7 @@ use crate::equations::{self, Equations};
 use crate::evidence::{Ascent, Evidence, Targets};
 use crate::model::{Factor, Posterior};
 use crate::problem::Problem;
-use crate::{Fit, Kernel, Model, Report, Result, Trace, Width};
+use crate::{Fit, Kernel, Model, Progress, Report, Result, Trace, Width};
 
 /// Tipping's relevance vector machine (2001) by fast marginal likelihood maximisation (Tipping and
 /// Faul 2003), for each target by itself.
@@ -56,6 +56,33 @@ impl Default for Tipping {
 impl Tipping {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
+        self.fit_observed(x, y, &|_| ())
+    }
+
+    /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step. Targets are fitted in
+    /// parallel, so it may be called by several threads at once.
+    ///
+    /// ```
+    /// use std::sync::atomic::{AtomicUsize, Ordering};
+    /// use phalanx_rvm::{Tipping, faer::Mat};
+    ///
+    /// # fn main() -> phalanx_rvm::Result<()> {
+    /// let x = Mat::from_fn(1, 50, |_, t| t as f64 / 5.0);
+    /// let y = Mat::from_fn(1, 50, |_, t| x[(0, t)].sin());
+    /// let most = AtomicUsize::new(0);
+    /// Tipping::default().fit_observed(x.as_ref(), y.as_ref(), &|progress| {
+    ///     most.fetch_max(progress.vectors, Ordering::Relaxed);
+    /// })?;
+    /// assert!(most.into_inner() > 0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn fit_observed(
+        &self,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        observe: &(dyn Fn(Progress) + Sync),
+    ) -> Result<Fit> {
         let &Self { kernel, noise_floor, tolerance, price, restarts, max_iterations } = self;
         let ascent =
             Ascent { noise_floor, price, tolerance, max_iterations, restarts, most: usize::MAX };
@@ -77,7 +104,8 @@ impl Tipping {
                     energies: &energies[j..=j],
                     freedom: design.samples() as f64 - 1.0,
                 })?;
-                let (evidence, trace) = ascent.run(start)?;
+                let (evidence, trace) =
+                    ascent.run(start, &|progress| observe(Progress { target: j, ..progress }))?;
                 Ok((Row::new(evidence)?, trace))
             })
             .collect::<Result<_>>()?;

@@ -1,7 +1,7 @@
 //! Taking steps until none gains, and starting again nearby.
 
 use super::{Change, Evidence, Targets};
-use crate::{Error, Result, Trace, check};
+use crate::{Error, Progress, Result, Trace, check};
 
 /// Steps between two computations from scratch, besides one for each active column: then the
 /// computation, which costs about a step for each, hardly matters.
@@ -51,9 +51,16 @@ impl Ascent {
     /// Climbs from where it is put, and then again from the best so far without some neighbours, which
     /// finds others in their place (iterated local search: Lourenço, Martin and Stützle 2003).
     /// One column at a time ends where no change of one column gains, of which there are many.
-    pub(crate) fn run<'a>(&self, mut best: Evidence<'a>) -> Result<(Evidence<'a>, Trace)> {
+    pub(crate) fn run<'a>(
+        &self,
+        mut best: Evidence<'a>,
+        observe: &dyn Fn(Progress),
+    ) -> Result<(Evidence<'a>, Trace)> {
         let (mut objective, mut left) = (Vec::new(), self.max_iterations);
-        let mut converged = self.climb(&mut best, &mut left, |value| objective.push(value))?;
+        let mut converged = self.climb(&mut best, &mut left, |progress| {
+            objective.push(progress.evidence);
+            observe(progress);
+        })?;
         for round in 0..self.restarts {
             if best.active.is_empty() || !converged {
                 break;
@@ -62,7 +69,7 @@ impl Ascent {
             for column in neighbours(&best, round) {
                 other.take(Change::Precision { column, alpha: f64::INFINITY });
             }
-            converged = self.climb(&mut other, &mut left, |_| ())?;
+            converged = self.climb(&mut other, &mut left, observe)?;
             if other.objective() > best.objective() + self.tolerance {
                 objective.push(other.value());
                 best = other;
@@ -71,13 +78,13 @@ impl Ascent {
         Ok((best, Trace { converged, objective }))
     }
 
-    /// Takes the step that gains the most, again and again, and tells the evidence after each. It
+    /// Takes the step that gains the most, again and again, and tells of each. It
     /// has converged when nothing gains by numbers computed from scratch.
     fn climb(
         &self,
         evidence: &mut Evidence<'_>,
         left: &mut usize,
-        mut observe: impl FnMut(f64),
+        mut observe: impl FnMut(Progress),
     ) -> Result<bool> {
         loop {
             let step = evidence.best_step();
@@ -94,7 +101,12 @@ impl Ascent {
             }
             *left -= 1;
             evidence.take(step.change);
-            observe(evidence.value());
+            observe(Progress {
+                target: 0,
+                iteration: self.max_iterations - *left,
+                evidence: evidence.value(),
+                vectors: evidence.active.len(),
+            });
         }
     }
 }

@@ -9,7 +9,8 @@ use crate::design::Design;
 use crate::multivariate::Vectors;
 use crate::problem::Problem;
 use crate::{
-    Error, Fit, Kernel, MultivariateRvm, Report, Result, Standardiser, Trace, Width, check,
+    Error, Fit, Kernel, MultivariateRvm, Progress, Report, Result, Standardiser, Trace, Width,
+    check,
 };
 use evidence::Widths;
 use lbfgs::Point;
@@ -62,6 +63,16 @@ impl Default for LearntWidths {
 impl LearntWidths {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
+        self.fit_observed(x, y, &|_| ())
+    }
+
+    /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step over the vectors.
+    pub fn fit_observed(
+        &self,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        observe: &dyn Fn(Progress),
+    ) -> Result<Fit> {
         let Kernel::Gaussian(width) = self.rvm.kernel else {
             return Err(Error::NoWidth);
         };
@@ -83,7 +94,7 @@ impl LearntWidths {
         };
         let mut objective: Vec<f64> = Vec::new();
         loop {
-            let (fit, vectors) = learning.climb_vectors(&self.rvm, x, y)?;
+            let (fit, vectors) = learning.climb_vectors(&self.rvm, x, y, observe)?;
             let gained = objective.last().map_or(f64::INFINITY, |last| vectors.evidence - last);
             objective.push(vectors.evidence);
             let converged = gained <= self.rvm.tolerance || vectors.columns.is_empty();
@@ -129,6 +140,7 @@ impl Learning {
         rvm: &MultivariateRvm,
         x: MatRef<'_, f64>,
         y: MatRef<'_, f64>,
+        observe: &dyn Fn(Progress),
     ) -> Result<(Fit, Vectors)> {
         // Scaled by their widths' roots the inputs want a Gaussian of width 1.
         let mut scale = self.problem.inputs.scale().to_vec();
@@ -141,7 +153,7 @@ impl Learning {
         let inputs = Standardiser::from_parts(self.problem.inputs.mean().to_vec(), scale)?;
         let scaled = Problem::scaled(inputs, x, y)?;
         let design = Design::full(&scaled, Kernel::Gaussian(Width::Beta(1.0)))?;
-        rvm.resume(&design, &self.vectors)
+        rvm.resume(&design, &self.vectors, observe)
     }
 
     /// The best widths for these vectors.

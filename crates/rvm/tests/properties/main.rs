@@ -1,5 +1,6 @@
 //! Properties that every fitter must have, and each one's difference from a slow and obvious one.
 
+mod auto_traits;
 mod bad_input;
 mod bridges;
 mod conditional;
@@ -16,3 +17,4 @@ mod parts;
 mod problems;
 mod streams;
 mod tipping;
+mod torture;
