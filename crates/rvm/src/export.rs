@@ -22,14 +22,11 @@ impl Model {
     /// ```
     pub fn to_rust(&self) -> String {
         let tables = self.tables();
-        let constants: String = tables
-            .iter()
-            .map(|table| {
-                let Table { name, whole, values } = table;
-                let kind = if *whole { "usize" } else { "f64" };
-                format!("const {name}: [{kind}; {}] = [{}];\n", values.len(), values.join(", "))
-            })
-            .collect();
+        let constants = tables.iter().map(|Table { name, whole, values }| {
+            let kind = if *whole { "usize" } else { "f64" };
+            format!("const {name}: [{kind}; {}] = [{}];\n", values.len(), values.join(", "))
+        });
+        let constants = constants.collect::<Vec<_>>().concat();
         let noise = numbers(self.noise()).join(", ");
         let (inputs, outputs) = (self.inputs(), self.outputs());
         let body = if self.parts().column_means.is_empty() {
@@ -79,16 +76,13 @@ impl Model {
             return Err(Error::Identifier { name: name.to_owned() });
         }
         let upper = name.to_ascii_uppercase();
-        let constants: String = self
-            .tables()
-            .iter()
-            .filter(|table| !table.values.is_empty())
-            .map(|Table { name: table, whole, values }| {
-                let kind = if *whole { "int" } else { "double" };
-                let values = values.join(", ");
-                format!("static const {kind} {upper}_{table}[] = {{{values}}};\n")
-            })
-            .collect();
+        let tables = self.tables();
+        let filled = tables.iter().filter(|table| !table.values.is_empty());
+        let constants = filled.map(|Table { name: table, whole, values }| {
+            let kind = if *whole { "int" } else { "double" };
+            format!("static const {kind} {upper}_{table}[] = {{{}}};\n", values.join(", "))
+        });
+        let constants = constants.collect::<Vec<_>>().concat();
         let columns = self.parts().column_means.len();
         let features = self.parts().features.len();
         let value = match &self.parts().basis {

@@ -128,7 +128,9 @@ impl Healed {
         let mut star: Vec<f64> =
             (0..n).map(|t| (-beta * squared(self.z.col_as_slice(t))).exp()).collect();
         let mean = star.iter().sum::<f64>() / n as f64;
-        star.iter_mut().for_each(|value| *value -= mean);
+        for value in &mut star {
+            *value -= mean;
+        }
         (star, 1.0 - mean)
     }
 }

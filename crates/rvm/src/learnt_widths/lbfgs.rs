@@ -77,7 +77,9 @@ fn direction(gradient: &[f64], pairs: &[Pair]) -> Vec<f64> {
         // A first step of length 1.
         None => dot(gradient, gradient).sqrt().max(f64::MIN_POSITIVE).recip(),
     };
-    direction.iter_mut().for_each(|v| *v *= scale);
+    for value in &mut direction {
+        *value *= scale;
+    }
     for (pair, share) in pairs.iter().zip(shares.iter().rev()) {
         let by = share - dot(&pair.bent, &direction) / pair.curvature;
         axpy(&mut direction, by, &pair.moved);
