@@ -7,6 +7,8 @@ use super::{Basis, Factor, Model, Posterior};
 use crate::linalg::axpy;
 use crate::{Error, Result, check};
 
+/// Centres whose distances grow together.
+const LANES: usize = 8;
 /// Samples that one task predicts.
 const BLOCK: usize = 64;
 
@@ -23,6 +25,18 @@ pub struct Scratch {
     /// A projection's input in single precision, and its output.
     pub(crate) single: Vec<f32>,
     pub(crate) projected: Vec<f64>,
+}
+
+impl Scratch {
+    /// The last prediction's standardised features.
+    pub(crate) fn features(&self) -> &[f64] {
+        &self.z
+    }
+
+    /// The last prediction's centred basis columns.
+    pub(crate) fn columns(&self) -> &[f64] {
+        &self.phi
+    }
 }
 
 impl Model {
@@ -119,14 +133,7 @@ impl Model {
             Basis::Linear => phi.extend_from_slice(z),
             Basis::Gaussian { beta, samples, centres } => {
                 phi.resize(samples.len(), 0.0);
-                // All centres' distances grow together, feature by feature: the inner loop runs
-                // over neighbours in memory and vectorises.
-                for (z, centres) in z.iter().zip(centres.chunks_exact(samples.len())) {
-                    for (squared, centre) in phi.iter_mut().zip(centres) {
-                        let difference = z - centre;
-                        *squared += difference * difference;
-                    }
-                }
+                squared_distances(z, centres, phi);
                 for value in phi.iter_mut() {
                     *value = (-beta * *value).exp();
                 }
@@ -185,6 +192,31 @@ impl Factor {
             packed = rest;
         }
         spread.iter().map(|v| v * v).sum()
+    }
+}
+
+/// ‖z − c‖² to each of the centres, which come feature by feature: neighbours in memory, so that
+/// this vectorises, and some at a time, so that their sums stay in registers.
+fn squared_distances(z: &[f64], centres: &[f64], squared: &mut [f64]) {
+    let p = squared.len();
+    let Some(last) = p.checked_sub(LANES) else {
+        for (z, centres) in z.iter().zip(centres.chunks_exact(p.max(1))) {
+            for (squared, centre) in squared.iter_mut().zip(centres) {
+                *squared += (z - centre) * (z - centre);
+            }
+        }
+        return;
+    };
+    // The last group overlaps the one before it, unless the centres divide evenly.
+    for start in (0..last).step_by(LANES).chain([last]) {
+        let mut sums = [0.0; LANES];
+        let groups = centres[start..].chunks(p).filter_map(|row| row.first_chunk::<LANES>());
+        for (z, group) in z.iter().zip(groups) {
+            for (sum, centre) in sums.iter_mut().zip(group) {
+                *sum += (z - centre) * (z - centre);
+            }
+        }
+        squared[start..start + LANES].copy_from_slice(&sums);
     }
 }
 
