@@ -68,7 +68,7 @@ fn target(target: Target, unit: &str) -> String {
     match target {
         Target::Open => String::new(),
         Target::AtMost(most) => format!("≤ {}", with_unit(&most.to_string(), unit)),
-        Target::AtMostTheirs(factor) if factor == 1.0 => "≤ theirs".to_owned(),
+        Target::AtMostTheirs(1.0) => "≤ theirs".to_owned(),
         Target::AtMostTheirs(factor) => format!("≤ {} × theirs", digits(factor)),
         Target::BelowTheirs => "< theirs".to_owned(),
         Target::NotLowerBy(fraction) => format!("≥ theirs − {} %", 100.0 * fraction),

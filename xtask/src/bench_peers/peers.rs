@@ -60,7 +60,7 @@ impl Peers {
     }
 
     /// A folder for what the scripts write.
-    pub(crate) fn data(&self) -> Result<PathBuf> {
+    pub(crate) fn data() -> Result<PathBuf> {
         let folder = files::in_repository("target/peers/data");
         std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
         Ok(folder)
@@ -68,7 +68,7 @@ impl Peers {
 
     /// The folder of problems that gen_data.py writes.
     pub(crate) fn problems(&self) -> Result<PathBuf> {
-        let folder = self.data()?;
+        let folder = Self::data()?;
         if !folder.join("hand_x.csv").exists() {
             self.script("gen_data.py", &[&folder.display().to_string()])?;
         }

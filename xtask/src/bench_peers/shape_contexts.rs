@@ -21,7 +21,7 @@ const PEERS: [(&str, &str, &str); 3] = [
 
 pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
     eprintln!("shape contexts");
-    let path = peers.data()?.join("contour.csv");
+    let path = Peers::data()?.join("contour.csv");
     let argument = path.display().to_string();
     let mut printed = Vec::new();
     let mut ours = Vec::new();
