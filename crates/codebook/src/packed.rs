@@ -158,11 +158,11 @@ impl Sums for Euclidean {
     #[inline(always)]
     fn of_blocks<const N: usize>(blocks: &[Lanes], dim: usize, to: &Support) -> [Lanes; N] {
         let mut sums = [[to.mass; LANES]; N];
+        let blocks: [&[Lanes]; N] = std::array::from_fn(|block| &blocks[block * dim..][..dim]);
         for &Bin { index, height } in to.terms() {
-            for (block, sums) in sums.iter_mut().enumerate() {
-                let heights = &blocks[block * dim + index];
-                for lane in 0..LANES {
-                    sums[lane] -= height * heights[lane];
+            for (sums, block) in sums.iter_mut().zip(blocks) {
+                for (sum, value) in sums.iter_mut().zip(&block[index]) {
+                    *sum -= height * value;
                 }
             }
         }
