@@ -25,7 +25,8 @@ impl<'a> Design<'a> {
         let mut phi = columns.between_centres().unwrap_or_else(|| {
             linalg::subrows(problem.z.as_ref(), columns.features()).transpose().to_owned()
         });
-        let means = centre(&mut phi);
+        // This stands for an unpenalised bias.
+        let means = linalg::centre(&mut phi);
         Ok(Self { problem, columns, phi, means, target_means: vec![0.0; problem.y.ncols()] })
     }
 
@@ -87,18 +88,4 @@ impl Equations for Design<'_> {
         let residuals = self.targets() - linalg::product(phi.as_ref(), weights);
         residuals.col_iter().map(|column| column.iter().map(|r| r * r).sum()).collect()
     }
-}
-
-/// Subtracts its mean from each column, which stands for an unpenalised bias.
-fn centre(columns: &mut Mat<f64>) -> Vec<f64> {
-    (0..columns.ncols())
-        .map(|j| {
-            let column = columns.col_as_slice_mut(j);
-            let mean = column.iter().sum::<f64>() / column.len() as f64;
-            for value in &mut *column {
-                *value -= mean;
-            }
-            mean
-        })
-        .collect()
 }

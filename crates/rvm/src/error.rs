@@ -114,6 +114,18 @@ pub enum Error {
         /// Kernel of the columns.
         columns: Kernel,
     },
+    /// A name that C does not take.
+    #[error("{name:?} is no C identifier")]
+    Identifier {
+        /// The name.
+        name: String,
+    },
+    /// Only a model with Gaussians and a posterior over their weights can be healed.
+    #[error("the model has no Gaussians with a posterior over their weights")]
+    NotSparse,
+    /// Widths can be learnt of Gaussians only.
+    #[error("a linear kernel has no width to learn")]
+    NoWidth,
     /// The columns of a cascade's second pass read a feature that its first did not select.
     #[error("the columns read feature {feature}, which the first pass did not select")]
     NotSelected {

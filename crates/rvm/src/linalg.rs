@@ -141,3 +141,32 @@ pub(crate) fn axpy(y: &mut [f64], s: f64, x: &[f64]) {
         *y += s * x;
     }
 }
+
+/// y −= Σₖ cₖ xₖ, four at a time: y is then read and written a quarter as often.
+pub(crate) fn subtract_products(y: &mut [f64], c: &[f64], x: &[&[f64]]) {
+    let (whole, rest) = x.as_chunks::<4>();
+    let (by_four, last) = c.as_chunks::<4>();
+    for (&[a, b, c, d], [p, q, r, s]) in by_four.iter().zip(whole) {
+        let columns = p.iter().zip(*q).zip(r.iter().zip(*s));
+        for (y, ((p, q), (r, s))) in y.iter_mut().zip(columns) {
+            *y -= (a * p + b * q) + (c * r + d * s);
+        }
+    }
+    for (c, x) in last.iter().zip(rest) {
+        axpy(y, -c, x);
+    }
+}
+
+/// Subtracts its mean from each column; returns the means.
+pub(crate) fn centre(columns: &mut Mat<f64>) -> Vec<f64> {
+    (0..columns.ncols())
+        .map(|j| {
+            let column = columns.col_as_slice_mut(j);
+            let mean = column.iter().sum::<f64>() / column.len() as f64;
+            for value in &mut *column {
+                *value -= mean;
+            }
+            mean
+        })
+        .collect()
+}

@@ -8,7 +8,7 @@ use crate::evidence::{Ascent, Targets};
 use crate::model::{Factor, Posterior};
 use crate::problem::Problem;
 use crate::sums::{Summed, Sums};
-use crate::{Columns, Error, Fit, Kernel, Report, Result, Width};
+use crate::{Columns, Error, Fit, Kernel, Progress, Report, Result, Width};
 
 /// The multivariate relevance vector machine (Thayananthan, Navaratnam, Stenger, Torr and Cipolla
 /// 2006) in the fast form of Ha and Zhang (2017, arXiv 1704.05041): the targets share each
@@ -17,9 +17,9 @@ use crate::{Columns, Error, Fit, Kernel, Report, Result, Width};
 ///
 /// It is climbed as [`Tipping`](crate::Tipping) is: each step adds, re-estimates or deletes the one
 /// column that raises the evidence of all targets together the most, by rank-one updates that all
-/// targets share, and the noise of every target then follows in closed form. The trace holds the
-/// log evidence in nats after each step, of the standardised targets that vary; it never falls. An
-/// unpenalised bias stands beside the columns.
+/// targets share, or gives every target the noise at which the evidence is greatest. The trace holds
+/// the log evidence of all standardised targets that vary, as `Tipping`'s do. An unpenalised bias
+/// stands beside the columns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MultivariateRvm {
@@ -31,8 +31,14 @@ pub struct MultivariateRvm {
     /// Least noise variance, as a share of each target's variance, in (0, 1]: data without noise
     /// would drive it to zero.
     pub noise_floor: f64,
+    /// Nats that each column kept must add to the evidence; at least 0. Columns that add next to
+    /// nothing cost time in every prediction.
+    pub price: f64,
     /// Steps that gain no more than this, in nats, are not taken; above 0.
     pub tolerance: f64,
+    /// Climbs after the first, each from the best so far without some columns that neighbour each
+    /// other: more of them find more evidence.
+    pub restarts: usize,
     /// Most steps, at least 1.
     pub max_iterations: usize,
 }
@@ -43,8 +49,10 @@ impl Default for MultivariateRvm {
             kernel: Kernel::Gaussian(Width::Scatter(1.0)),
             most: None,
             noise_floor: 1e-4,
+            price: 0.02,
             tolerance: 1e-3,
-            max_iterations: 10_000,
+            restarts: 0,
+            max_iterations: 100_000,
         }
     }
 }
@@ -52,17 +60,35 @@ impl Default for MultivariateRvm {
 impl MultivariateRvm {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
+        self.fit_observed(x, y, &|_| ())
+    }
+
+    /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step.
+    pub fn fit_observed(
+        &self,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        observe: &dyn Fn(Progress),
+    ) -> Result<Fit> {
         let problem = Problem::new(x, y)?;
-        self.solve(&Design::full(&problem, self.kernel)?)
+        let design = Design::full(&problem, self.kernel)?;
+        Ok(self.resume(&design, &Vectors::default(), observe)?.0)
     }
 
     /// Fits sums over columns of the same kernel.
     pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
         columns.check_kernel(self.kernel)?;
-        self.solve(&Summed::new(columns, sums)?)
+        let summed = Summed::new(columns, sums)?;
+        Ok(self.resume(&summed, &Vectors::default(), &|_| ())?.0)
     }
 
-    fn solve(&self, equations: &dyn Equations) -> Result<Fit> {
+    /// Climbs from vectors that are known to be good; returns those that it ends with too.
+    pub(crate) fn resume(
+        &self,
+        equations: &dyn Equations,
+        vectors: &Vectors,
+        observe: &dyn Fn(Progress),
+    ) -> Result<(Fit, Vectors)> {
         let ascent = self.ascent()?;
         let (gram, correlations) = (equations.gram(), equations.correlations());
         let energies = equations.energies();
@@ -70,16 +96,23 @@ impl MultivariateRvm {
         let correlations =
             Mat::from_fn(gram.ncols(), varying.len(), |k, v| correlations[(k, varying[v])]);
         let of_varying: Vec<f64> = varying.iter().map(|&j| energies[j]).collect();
-        let (evidence, trace) = ascent.run(Targets {
+        let mut start = ascent.start(Targets {
             gram: &gram,
             correlations: correlations.as_ref(),
             energies: &of_varying,
             freedom: equations.samples() as f64 - 1.0,
         })?;
+        if !vectors.columns.is_empty() {
+            start = start.resume(&vectors.columns, &vectors.alpha)?;
+        }
+        let (evidence, trace) = ascent.run(start, observe)?;
         let mut noise = vec![0.0; energies.len()];
         for (&j, variance) in varying.iter().zip(evidence.noise()) {
             noise[j] = variance.sqrt();
         }
+        let (columns, alpha) = evidence.active();
+        let (columns, alpha) = (columns.to_vec(), alpha.to_vec());
+        let found = Vectors { columns, alpha, evidence: evidence.value() };
         let (active, mu, factor) = evidence.into_posterior()?;
         let mut kept = active.clone();
         kept.sort_unstable();
@@ -93,17 +126,26 @@ impl MultivariateRvm {
         let factor = Factor::pack(active.iter().map(|&k| place(k)).collect(), factor.as_ref());
         let posterior = Posterior::Weights(vec![factor]);
         let model = equations::model(equations, &kept, weights.as_ref(), &noise, posterior);
-        Ok(Fit { model, report: Report::new(vec![trace], None) })
+        Ok((Fit { model, report: Report::new(vec![trace], None) }, found))
     }
 
     fn ascent(&self) -> Result<Ascent> {
-        let &Self { most, noise_floor, tolerance, max_iterations, .. } = self;
+        let &Self { most, noise_floor, price, tolerance, restarts, max_iterations, .. } = self;
         if most == Some(0) {
             return Err(Error::Parameter { name: "most", value: 0.0, requirement: "at least 1" });
         }
         let most = most.unwrap_or(usize::MAX);
-        let ascent = Ascent { noise_floor, tolerance, max_iterations, most };
+        let ascent = Ascent { noise_floor, price, tolerance, max_iterations, restarts, most };
         ascent.check()?;
         Ok(ascent)
     }
+}
+
+/// Relevant columns and their precisions relative to the noise.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Vectors {
+    pub(crate) columns: Vec<usize>,
+    pub(crate) alpha: Vec<f64>,
+    /// The log evidence that they give, nats.
+    pub(crate) evidence: f64,
 }

@@ -24,7 +24,12 @@ impl Problem {
         Self::scaled(Standardiser::in_proportion(x)?, x, y)
     }
 
-    fn scaled(inputs: Standardiser, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Self> {
+    /// The inputs are scaled as given.
+    pub(crate) fn scaled(
+        inputs: Standardiser,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+    ) -> Result<Self> {
         check::matrix("y", y)?;
         check::length("columns (samples) of y", x.ncols(), y.ncols())?;
         let targets = Standardiser::fit(y)?;

@@ -46,3 +46,17 @@ impl Report {
         }
     }
 }
+
+/// Where a climb of the evidence stands after a step, for whoever watches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Progress {
+    /// The target that is fitted; 0 where all are fitted together.
+    pub target: usize,
+    /// Steps taken so far, those of restarts among them.
+    pub iteration: usize,
+    /// Log evidence of the present climb, in nats: restarts begin lower.
+    pub evidence: f64,
+    /// Columns that are active.
+    pub vectors: usize,
+}

@@ -8,16 +8,18 @@ use crate::equations::{self, Equations};
 use crate::evidence::{Ascent, Evidence, Targets};
 use crate::model::{Factor, Posterior};
 use crate::problem::Problem;
-use crate::{Fit, Kernel, Model, Report, Result, Trace, Width};
+use crate::{Fit, Kernel, Model, Progress, Report, Result, Trace, Width};
 
 /// Tipping's relevance vector machine (2001) by fast marginal likelihood maximisation (Tipping and
 /// Faul 2003), for each target by itself.
 ///
-/// Each step adds, re-estimates or deletes the one column that raises the evidence the most, and
-/// then gives the noise the variance at which the evidence is greatest; both are rank-one updates.
-/// It has converged when no step gains. An unpenalised bias stands beside the columns. The traces,
-/// one per target, hold the log evidence in nats after each step, of the standardised target; it
-/// never falls.
+/// Each step adds, re-estimates or deletes one column by a rank-one update, or gives the noise the
+/// variance at which the evidence is greatest: whichever raises the evidence the most. It has
+/// converged when no step gains. What one step at a time converges to depends on its first steps,
+/// so that it is left again [`restarts`](Self::restarts) times, in search of a better one. An
+/// unpenalised bias stands beside the columns. The traces, one per target, hold the log evidence in
+/// nats of the standardised target, after each step of the first climb and after each restart that
+/// found more; it falls only where a column goes that is not worth its price.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tipping {
@@ -26,8 +28,14 @@ pub struct Tipping {
     /// Least noise variance, as a share of the target's variance, in (0, 1]: data without noise
     /// would drive it to zero.
     pub noise_floor: f64,
+    /// Nats that each column kept must add to the evidence; at least 0. Columns that add next to
+    /// nothing cost time in every prediction.
+    pub price: f64,
     /// Steps that gain no more than this, in nats, are not taken; above 0.
     pub tolerance: f64,
+    /// Climbs after the first, each from the best so far without some columns that neighbour each
+    /// other: more of them find more evidence.
+    pub restarts: usize,
     /// Most steps per target, at least 1.
     pub max_iterations: usize,
 }
@@ -37,8 +45,10 @@ impl Default for Tipping {
         Self {
             kernel: Kernel::Gaussian(Width::Scatter(3.0)),
             noise_floor: 1e-4,
-            tolerance: 1e-4,
-            max_iterations: 10_000,
+            price: 0.02,
+            tolerance: 1e-3,
+            restarts: 15,
+            max_iterations: 100_000,
         }
     }
 }
@@ -46,8 +56,36 @@ impl Default for Tipping {
 impl Tipping {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
-        let &Self { kernel, noise_floor, tolerance, max_iterations } = self;
-        let ascent = Ascent { noise_floor, tolerance, max_iterations, most: usize::MAX };
+        self.fit_observed(x, y, &|_| ())
+    }
+
+    /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step. Targets are fitted in
+    /// parallel, so it may be called by several threads at once.
+    ///
+    /// ```
+    /// use std::sync::atomic::{AtomicUsize, Ordering};
+    /// use phalanx_rvm::{Tipping, faer::Mat};
+    ///
+    /// # fn main() -> phalanx_rvm::Result<()> {
+    /// let x = Mat::from_fn(1, 50, |_, t| t as f64 / 5.0);
+    /// let y = Mat::from_fn(1, 50, |_, t| x[(0, t)].sin());
+    /// let most = AtomicUsize::new(0);
+    /// Tipping::default().fit_observed(x.as_ref(), y.as_ref(), &|progress| {
+    ///     most.fetch_max(progress.vectors, Ordering::Relaxed);
+    /// })?;
+    /// assert!(most.into_inner() > 0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn fit_observed(
+        &self,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        observe: &(dyn Fn(Progress) + Sync),
+    ) -> Result<Fit> {
+        let &Self { kernel, noise_floor, tolerance, price, restarts, max_iterations } = self;
+        let ascent =
+            Ascent { noise_floor, price, tolerance, max_iterations, restarts, most: usize::MAX };
         ascent.check()?;
         let problem = Problem::new(x, y)?;
         let design = Design::full(&problem, kernel)?;
@@ -60,12 +98,14 @@ impl Tipping {
                     let trace = Trace { converged: true, objective: Vec::new() };
                     return Ok((Row::constant(), trace));
                 }
-                let (evidence, trace) = ascent.run(Targets {
+                let start = ascent.start(Targets {
                     gram: &gram,
                     correlations: correlations.as_ref().subcols(j, 1),
                     energies: &energies[j..=j],
                     freedom: design.samples() as f64 - 1.0,
                 })?;
+                let (evidence, trace) =
+                    ascent.run(start, &|progress| observe(Progress { target: j, ..progress }))?;
                 Ok((Row::new(evidence)?, trace))
             })
             .collect::<Result<_>>()?;

@@ -31,12 +31,20 @@ pub(crate) struct Targets<'a> {
     pub(crate) freedom: f64,
 }
 
-/// A change of one column's precision α.
+/// A change of one hyper-parameter, the others held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Change {
+    /// The column's precision α; infinite to delete it.
+    Precision { column: usize, alpha: f64 },
+    /// Every target's noise, to where the evidence is greatest.
+    Noise,
+}
+
+/// A change and what it is worth.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Step {
-    column: usize,
-    /// The new precision; infinite to delete the column.
-    alpha: f64,
-    /// Nats gained at the present noise.
+    change: Change,
+    /// What the objective gains, nats.
     gain: f64,
 }
 
@@ -47,12 +55,15 @@ pub(crate) struct Step {
 /// Then target j is distributed as N(0, σⱼ²C) with one C = I + ΦA⁻¹Φᵀ, and the targets share Σ
 /// and S while the noise stands apart from both: a new σⱼ² changes neither. For one target this is
 /// Tipping and Faul's own model with α/σ² written for α.
+#[derive(Clone)]
 pub(crate) struct Evidence<'a> {
     targets: Targets<'a>,
     /// Least noise variance.
     floor: f64,
     /// Most active columns.
     most: usize,
+    /// Nats that each active column must add to the evidence.
+    price: f64,
     /// Noise variance σⱼ².
     noise: Vec<f64>,
     active: Vec<usize>,
@@ -77,12 +88,13 @@ pub(crate) struct Evidence<'a> {
 
 impl<'a> Evidence<'a> {
     /// Starts with no column active.
-    pub(crate) fn new(targets: Targets<'a>, floor: f64, most: usize) -> Result<Self> {
+    pub(crate) fn new(targets: Targets<'a>, floor: f64, most: usize, price: f64) -> Result<Self> {
         let (p, m) = targets.correlations.shape();
         let mut evidence = Self {
             targets,
             floor,
             most,
+            price,
             noise: vec![1.0; m],
             active: Vec::new(),
             position: vec![None; p],
@@ -96,8 +108,26 @@ impl<'a> Evidence<'a> {
             stale: 0,
         };
         evidence.refresh()?;
+        evidence.update_noise();
         evidence.noise.iter_mut().for_each(|noise| *noise = (FIRST_NOISE * *noise).max(floor));
         Ok(evidence)
+    }
+
+    /// Starts with these columns active, at these precisions and the noise that goes with them.
+    pub(crate) fn resume(mut self, active: &[usize], alpha: &[f64]) -> Result<Self> {
+        self.active = active.to_vec();
+        self.alpha = alpha.to_vec();
+        for (i, &column) in active.iter().enumerate() {
+            self.position[column] = Some(i);
+        }
+        self.refresh()?;
+        self.update_noise();
+        Ok(self)
+    }
+
+    /// The active columns and their precisions.
+    pub(crate) fn active(&self) -> (&[usize], &[f64]) {
+        (&self.active, &self.alpha)
     }
 
     /// Log evidence of all targets together, nats.
@@ -111,6 +141,11 @@ impl<'a> Evidence<'a> {
             })
             .sum();
         -0.5 * (normal + self.outputs() * self.log_determinant)
+    }
+
+    /// What is climbed: the evidence less the price of the active columns.
+    fn objective(&self) -> f64 {
+        self.value() - self.price * self.active.len() as f64
     }
 
     /// Noise variance of each target.
@@ -128,14 +163,43 @@ impl<'a> Evidence<'a> {
         self.noise.len() as f64
     }
 
-    /// The step that raises the evidence the most.
+    /// The step that raises the objective the most.
     fn best_step(&self) -> Step {
-        let none = Step { column: 0, alpha: f64::INFINITY, gain: 0.0 };
-        self.qualities()
-            .into_iter()
-            .enumerate()
-            .map(|(column, quality)| self.step(column, quality))
-            .fold(none, |best, step| if step.gain > best.gain { step } else { best })
+        let qualities = self.qualities();
+        let noise = Step { change: Change::Noise, gain: self.noise_gain() };
+        let steps = self.active.iter().map(|&k| self.step(k, qualities[k]));
+        let addition = self.likeliest(&qualities).map(|k| self.step(k, qualities[k]));
+        steps
+            .chain(addition)
+            .fold(noise, |best, step| if step.gain > best.gain { step } else { best })
+    }
+
+    /// The column that gains the most of those that could be added: what it gains rises with its
+    /// quality over its sparsity.
+    fn likeliest(&self, qualities: &[f64]) -> Option<usize> {
+        let ratio = |k: usize| match self.position[k] {
+            None if self.apart(k, self.sparsity[k]) => qualities[k] / self.sparsity[k],
+            _ => 0.0,
+        };
+        let start = (None, self.outputs());
+        let (best, _) = (0..qualities.len()).fold(start, |(best, highest), k| {
+            let ratio = ratio(k);
+            if ratio > highest { (Some(k), ratio) } else { (best, highest) }
+        });
+        best
+    }
+
+    /// What the evidence gains if every target's noise becomes the best.
+    fn noise_gain(&self) -> f64 {
+        let gains = self.misfit.iter().zip(&self.noise).map(|(misfit, noise)| {
+            let excess = |noise: f64| self.targets.freedom * noise.ln() + misfit / noise;
+            0.5 * (excess(*noise) - excess(self.best_noise(*misfit)))
+        });
+        gains.sum()
+    }
+
+    fn best_noise(&self, misfit: f64) -> f64 {
+        (misfit / self.targets.freedom).max(self.floor)
     }
 
     /// Σⱼ qⱼ²/σⱼ² of every column, measured without the column itself.
@@ -173,22 +237,39 @@ impl<'a> Evidence<'a> {
         self.position[column].map_or(f64::INFINITY, |i| self.alpha[i])
     }
 
-    /// The best change of one column: the evidence is greatest at α = m s²/(Σⱼ qⱼ²/σⱼ² − m s), or
-    /// without the column if that is negative.
-    fn step(&self, column: usize, quality: f64) -> Step {
-        let (s, now, m) = (self.sparsity_of(column), self.alpha_of(column), self.outputs());
-        let apart = s > DEPENDENT * self.targets.gram[(column, column)];
-        let room = now.is_finite() || self.active.len() < self.most;
-        let theta = quality - m * s;
-        let alpha = if apart && room && theta > 0.0 { m * s * s / theta } else { f64::INFINITY };
-        // ℓ(α), what the column adds to the log evidence.
-        let adds = |alpha: f64| 0.5 * (quality / (alpha + s) - m * (s / alpha).ln_1p());
-        Step { column, alpha, gain: adds(alpha) - adds(now) }
+    /// Is enough of a column, whose s this is, outside the active ones?
+    fn apart(&self, column: usize, s: f64) -> bool {
+        s > DEPENDENT * self.targets.gram[(column, column)]
     }
 
-    /// Takes a step, and gives every target the noise at which the evidence is then greatest.
-    fn take(&mut self, step: &Step) {
-        let &Step { column, alpha, .. } = step;
+    /// The best change of one column: the evidence is greatest at α = m s²/(Σⱼ qⱼ²/σⱼ² − m s), or
+    /// without the column if that is negative or not worth the column's price.
+    fn step(&self, column: usize, quality: f64) -> Step {
+        let (s, now, m) = (self.sparsity_of(column), self.alpha_of(column), self.outputs());
+        let room = now.is_finite() || self.active.len() < self.most;
+        let theta = quality - m * s;
+        // ℓ(α), what the column adds to the log evidence, less its price.
+        let adds = |alpha: f64| {
+            if alpha.is_infinite() {
+                return 0.0;
+            }
+            0.5 * (quality / (alpha + s) - m * (s / alpha).ln_1p()) - self.price
+        };
+        let best = if theta > 0.0 { m * s * s / theta } else { f64::INFINITY };
+        let keep = self.apart(column, s) && room && adds(best) > 0.0;
+        let alpha = if keep { best } else { f64::INFINITY };
+        Step { change: Change::Precision { column, alpha }, gain: adds(alpha) - adds(now) }
+    }
+
+    fn take(&mut self, change: Change) {
+        match change {
+            Change::Noise => self.update_noise(),
+            Change::Precision { column, alpha } => self.set_precision(column, alpha),
+        }
+        self.stale += 1;
+    }
+
+    fn set_precision(&mut self, column: usize, alpha: f64) {
         let (s, now) = (self.sparsity_of(column), self.alpha_of(column));
         let explained = (now + s).recip() - (alpha + s).recip();
         let qualities = self.quality_of(column);
@@ -207,13 +288,11 @@ impl<'a> Evidence<'a> {
                 self.alpha[i] = alpha;
             }
         }
-        self.update_noise();
-        self.stale += 1;
     }
 
     fn update_noise(&mut self) {
-        for (noise, misfit) in self.noise.iter_mut().zip(&self.misfit) {
-            *noise = (misfit / self.targets.freedom).max(self.floor);
+        for j in 0..self.noise.len() {
+            self.noise[j] = self.best_noise(self.misfit[j]);
         }
     }
 
@@ -266,9 +345,9 @@ impl<'a> Evidence<'a> {
 
     /// `values` −= Φᵀ Φ_active `coefficients`.
     fn subtract_active(&self, values: &mut [f64], coefficients: &[f64]) {
-        for (&k, coefficient) in self.active.iter().zip(coefficients) {
-            linalg::axpy(values, -coefficient, self.targets.gram.col_as_slice(k));
-        }
+        let columns: Vec<&[f64]> =
+            self.active.iter().map(|&k| self.targets.gram.col_as_slice(k)).collect();
+        linalg::subtract_products(values, coefficients, &columns);
     }
 
     fn remove(&mut self, i: usize) {

@@ -56,7 +56,6 @@ impl Evidence<'_> {
         self.mu = mu.row_iter().map(|row| row.iter().copied().collect()).collect();
         self.misfit = misfit;
         self.log_determinant = log_determinant;
-        self.update_noise();
         self.stale = 0;
         Ok(())
     }

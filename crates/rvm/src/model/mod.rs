@@ -75,6 +75,14 @@ impl Model {
         MatRef::from_column_major_slice(&self.parts.weights, self.parts.outputs, self.parts.size())
     }
 
+    /// The distance along each selected feature, in its units, at which a Gaussian has fallen to
+    /// e^(−½); `None` for a linear model.
+    pub fn length_scales(&self) -> Option<Vec<f64>> {
+        let Basis::Gaussian { beta, .. } = &self.parts.basis else { return None };
+        let deviation = (2.0 * beta).sqrt().recip();
+        Some(self.parts.feature_scales.iter().map(|scale| scale * deviation).collect())
+    }
+
     /// Standard deviation of each target's noise, in its units.
     pub fn noise(&self) -> &[f64] {
         &self.parts.noise

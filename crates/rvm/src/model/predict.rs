@@ -25,6 +25,18 @@ pub struct Scratch {
     pub(crate) projected: Vec<f64>,
 }
 
+impl Scratch {
+    /// The last prediction's standardised features.
+    pub(crate) fn features(&self) -> &[f64] {
+        &self.z
+    }
+
+    /// The last prediction's centred basis columns.
+    pub(crate) fn columns(&self) -> &[f64] {
+        &self.phi
+    }
+}
+
 impl Model {
     /// Mean prediction, m×T, for each column of `x`, K×T. The inputs that the model reads must be
     /// finite. The numbers are those of [`predict_mean_into`](Self::predict_mean_into).

@@ -114,6 +114,9 @@ fn hyper_parameters_out_of_range_are_named() {
         assert_eq!(name(ForwardSelection { lambda: bad, ..forward }.fit(x, y)), "lambda");
         assert_eq!(name(Tipping { tolerance: bad, ..tipping }.fit(x, y)), "tolerance");
         assert_eq!(name(Tipping { noise_floor: bad, ..tipping }.fit(x, y)), "noise_floor");
+        if bad != 0.0 {
+            assert_eq!(name(Tipping { price: bad, ..tipping }.fit(x, y)), "price");
+        }
         assert_eq!(name(MultivariateRvm { tolerance: bad, ..shared }.fit(x, y)), "tolerance");
         assert_eq!(name(MultivariateRvm { noise_floor: bad, ..shared }.fit(x, y)), "noise_floor");
         let lambda = Lambda::LeaveOneOut(vec![1.0, bad]);

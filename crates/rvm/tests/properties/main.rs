@@ -1,11 +1,15 @@
 //! Properties that every fitter must have, and each one's difference from a slow and obvious one.
 
+mod auto_traits;
 mod bad_input;
 mod bridges;
 mod conditional;
 mod equivariance;
+mod export;
 mod forward;
+mod healed;
 mod kernel_ridge;
+mod learnt_widths;
 mod metric;
 mod multivariate;
 mod nystrom;
@@ -13,3 +17,4 @@ mod parts;
 mod problems;
 mod streams;
 mod tipping;
+mod torture;

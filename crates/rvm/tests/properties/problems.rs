@@ -2,8 +2,8 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Bridges, Cascade, Fit, ForwardSelection, Kernel, KernelRidge, MultivariateRvm, Nystrom, Result,
-    Ridge, Stop, Tipping, Width,
+    Bridges, Cascade, Fit, ForwardSelection, Kernel, KernelRidge, LearntWidths, MultivariateRvm,
+    Nystrom, Result, Ridge, Stop, Tipping, Width,
 };
 use proptest::prelude::ProptestConfig;
 use rand_core::Rng;
@@ -14,7 +14,7 @@ pub(crate) type Fitter = fn(MatRef<'_, f64>, MatRef<'_, f64>) -> Result<Fit>;
 pub(crate) const GAUSSIAN: Kernel = Kernel::Gaussian(Width::Scatter(1.0));
 
 /// Every fitter, with the kernels that it knows.
-pub(crate) const FITTERS: [(&str, Fitter); 12] = [
+pub(crate) const FITTERS: [(&str, Fitter); 13] = [
     ("ridge, linear", |x, y| Ridge::default().fit(x, y)),
     ("ridge, Gaussian", |x, y| Ridge { kernel: GAUSSIAN, lambda: 0.1 }.fit(x, y)),
     ("bridges, linear", |x, y| Bridges { kernel: Kernel::Linear, ..Bridges::default() }.fit(x, y)),
@@ -25,6 +25,7 @@ pub(crate) const FITTERS: [(&str, Fitter); 12] = [
         MultivariateRvm { kernel: Kernel::Linear, ..MultivariateRvm::default() }.fit(x, y)
     }),
     ("multivariate RVM, Gaussian", |x, y| MultivariateRvm::default().fit(x, y)),
+    ("learnt widths", |x, y| LearntWidths { rounds: 3, ..LearntWidths::default() }.fit(x, y)),
     ("kernel ridge", |x, y| KernelRidge::default().fit(x, y)),
     ("Nyström", |x, y| Nystrom::default().fit(x, y, x.ncols())),
     ("forward", |x, y| {

@@ -13,13 +13,37 @@ proptest! {
     fn the_evidence_never_falls(seed in any::<u64>(), linear in any::<bool>()) {
         let (x, y) = smooth(seed, 8, 3, 50);
         let kernel = if linear { Kernel::Linear } else { GAUSSIAN };
-        let fit = Tipping { kernel, ..Tipping::default() }.fit(x.as_ref(), y.as_ref())?;
+        let fit = Tipping { kernel, price: 0.0, ..Tipping::default() }.fit(x.as_ref(), y.as_ref())?;
         prop_assert!(fit.report.converged);
         for trace in &fit.report.traces {
             let evidence = &trace.objective;
             let rises = evidence.is_sorted_by(|a, b| *b >= a - 1e-9 * a.abs().max(1.0));
             prop_assert!(rises, "{evidence:?}");
         }
+    }
+
+    #[test]
+    fn restarts_find_no_less(seed in any::<u64>()) {
+        let (x, y) = smooth(seed, 3, 1, 60);
+        let evidence = |restarts| {
+            let tipping = Tipping { kernel: GAUSSIAN, price: 0.0, restarts, ..Tipping::default() };
+            let fit = tipping.fit(x.as_ref(), y.as_ref())?;
+            Ok::<_, phalanx_rvm::Error>(fit.report.traces[0].objective.last().copied())
+        };
+        prop_assert!(evidence(12)? >= evidence(0)?);
+    }
+
+    #[test]
+    fn a_price_is_paid_by_fewer_columns(seed in any::<u64>()) {
+        let (x, y) = smooth(seed, 3, 1, 60);
+        let fit = |price| Tipping { kernel: GAUSSIAN, price, ..Tipping::default() }.fit(x.as_ref(), y.as_ref());
+        let (dear, none) = (fit(5.0)?, fit(1e6)?);
+        prop_assert!(dear.model.kept_samples().len() <= fit(0.0)?.model.kept_samples().len());
+        // With every column pruned the model is the mean.
+        prop_assert!(none.model.kept_samples().is_empty() && none.report.converged);
+        let mean = y.row(0).iter().sum::<f64>() / 60.0;
+        let predicted = none.model.predict(x.as_ref())?;
+        prop_assert!(predicted.row(0).iter().all(|v| (v - mean).abs() < 1e-12 * (1.0 + mean.abs())));
     }
 
     #[test]

@@ -1,0 +1,62 @@
+//! Everything public can be sent to, and shared between, threads.
+
+use phalanx_rvm::{
+    Basis, Block, Bridges, Cascade, Columns, ConditionalDensity, ConditionalDensityParts,
+    Deviation, Error, Factor, Fit, ForwardSelection, GradientMetric, Group, Healed, Hypothesis,
+    Kernel, KernelRidge, Lambda, LearntWidths, Metric, Model, ModelParts, MultivariateRvm, Nystrom,
+    Penalty, Pilot, Posterior, Progress, Projected, Projection, ProjectionParts, Report, Ridge,
+    Scratch, Standardiser, Stop, Sums, SumsParts, Tie, Tipping, Trace, Width,
+};
+
+const fn shared<T: Send + Sync>() {}
+
+macro_rules! shared {
+    ($($kind:ty),+ $(,)?) => { $( const _: () = shared::<$kind>(); )+ };
+}
+
+// A type that is not makes the tests fail to compile.
+shared!(
+    Basis,
+    Block,
+    Bridges,
+    Cascade,
+    Columns,
+    ConditionalDensity,
+    ConditionalDensityParts,
+    Deviation,
+    Error,
+    Factor,
+    Fit,
+    ForwardSelection,
+    GradientMetric,
+    Group,
+    Healed,
+    Hypothesis,
+    Kernel,
+    KernelRidge,
+    Lambda,
+    LearntWidths,
+    Metric,
+    Model,
+    ModelParts,
+    MultivariateRvm,
+    Nystrom,
+    Penalty,
+    Pilot<'static>,
+    Posterior,
+    Progress,
+    Projected,
+    Projection,
+    ProjectionParts,
+    Report,
+    Ridge,
+    Scratch,
+    Standardiser,
+    Stop,
+    Sums,
+    SumsParts,
+    Tie,
+    Tipping,
+    Trace,
+    Width,
+);

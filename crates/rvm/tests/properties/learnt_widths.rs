@@ -1,0 +1,64 @@
+//! Learnt widths from outside: their evidence, and what they find irrelevant.
+
+use faer::Mat;
+use phalanx_rvm::{Error, Kernel, LearntWidths, MultivariateRvm, Tie};
+use proptest::prelude::*;
+
+use crate::problems::{Source, few, smooth};
+
+proptest! {
+    #![proptest_config(few())]
+
+    #[test]
+    fn the_evidence_never_falls(seed in any::<u64>(), tie in 0..3) {
+        let (x, y) = smooth(seed, 4, 2, 40);
+        let tie = [Tie::All, Tie::None, Tie::Blocks(vec![1, 3])][tie as usize].clone();
+        let rvm = MultivariateRvm { price: 0.0, ..MultivariateRvm::default() };
+        let fit = LearntWidths { rvm, tie, ..LearntWidths::default() }.fit(x.as_ref(), y.as_ref())?;
+        let evidence = &fit.report.traces[0].objective;
+        prop_assert!(evidence.is_sorted_by(|a, b| *b >= a - 1e-6 * a.abs().max(1.0)), "{evidence:?}");
+        let fixed = rvm.fit(x.as_ref(), y.as_ref())?.report.traces[0].objective.last().copied();
+        prop_assert!(evidence.last().copied() >= fixed);
+    }
+}
+
+/// Two inputs of six matter, one of them three times as much.
+fn two_of_six(samples: usize) -> (Mat<f64>, Mat<f64>) {
+    let mut source = Source::new(4);
+    let x = source.matrix(6, samples);
+    let y = Mat::from_fn(1, samples, |_, t| {
+        (3.0 * x[(1, t)]).sin() + x[(4, t)].cos() + 0.05 * source.uniform()
+    });
+    (x, y)
+}
+
+#[test]
+fn inputs_that_say_nothing_get_long_scales() {
+    let (x, y) = two_of_six(200);
+    let model = LearntWidths::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
+    let scales = model.length_scales().unwrap();
+    let of = |input: usize| {
+        let place = model.selected_features().iter().position(|&f| f == input);
+        place.map_or(f64::INFINITY, |place| scales[place])
+    };
+    assert!(of(1) < of(4), "{scales:?}");
+    for nothing in [0, 2, 3, 5] {
+        assert!(of(nothing) > 5.0 * of(4), "{scales:?}");
+    }
+    // And that is what fewer vectors and smaller errors come from.
+    let fixed = MultivariateRvm::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
+    assert!(2 * model.kept_samples().len() < fixed.kept_samples().len());
+}
+
+#[test]
+fn what_cannot_be_learnt_is_named() {
+    let (x, y) = two_of_six(20);
+    let linear = MultivariateRvm { kernel: Kernel::Linear, ..MultivariateRvm::default() };
+    let learn = |learnt: LearntWidths| learnt.fit(x.as_ref(), y.as_ref()).unwrap_err();
+    assert_eq!(learn(LearntWidths { rvm: linear, ..LearntWidths::default() }), Error::NoWidth);
+    let blocks = Tie::Blocks(vec![2, 3]);
+    let error = learn(LearntWidths { tie: blocks, ..LearntWidths::default() });
+    assert_eq!(error, Error::Shape { what: "inputs of all blocks", expected: 6, found: 5 });
+    let error = learn(LearntWidths { rounds: 0, ..LearntWidths::default() });
+    assert!(matches!(error, Error::Parameter { name: "max_iterations", .. }));
+}
