@@ -1,6 +1,7 @@
 //! The experiments and chores of phalanx.
 
 mod ablation;
+mod bench_peers;
 mod chart;
 mod contact_sheet;
 mod data_set;
@@ -95,6 +96,8 @@ enum Command {
     Headline(headline::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
     Pictures(pictures::Arguments),
+    /// Measure our crates beside their best peers, and write docs/peers.md.
+    BenchPeers(bench_peers::Arguments),
     /// Time every stage and write docs/performance.md.
     Performance(performance::Arguments),
 }
@@ -137,6 +140,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::ContactSheet(arguments) => contact_sheet::run(arguments)?,
         Command::TwoCamera(arguments) => two_camera::run(arguments)?,
         Command::Pictures(arguments) => pictures::run(arguments)?,
+        Command::BenchPeers(arguments) => bench_peers::run(arguments)?,
         Command::Performance(arguments) => performance::run(arguments)?,
     }
     Ok(ExitCode::SUCCESS)

@@ -86,6 +86,8 @@ const TRAINING: &[Row] = &[
     ("shaded, 2×2 samples/lens", "the same through a distorting lens", None),
     ("K-means 100000x60, K = 90/one iteration", "K-means by χ², 100,000 × 60, K = 90: one iteration", None),
     ("K-means 100000x60, K = 90/seeding and one assignment", "the same: seeding and one assignment", None),
+    ("K-means 100000x60, K = 90/one iteration, Euclidean", "K-means, Euclidean: one iteration", None),
+    ("K-means 100000x60, K = 90/seeding and one assignment, Euclidean", "the same: seeding and one assignment", None),
     ("fit 837x90 to 24/bridges linear to 40", "fit 837 × 90 → 24: bridges, linear, 40 features", None),
     ("fit 837x90 to 24/bridges gaussian to 40", "the same: bridges, Gaussian, 40 samples", None),
     ("fit 837x90 to 24/forward gaussian to 40", "the same: forward selection, Gaussian, 40 samples", None),

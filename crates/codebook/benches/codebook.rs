@@ -7,17 +7,21 @@ use std::time::{Duration, Instant};
 
 use criterion::{Criterion, SamplingMode, criterion_group, criterion_main};
 use histograms::{DIM, histograms};
-use phalanx_codebook::{KMeans, Scratch, Voting};
+use phalanx_codebook::{KMeans, Metric, Scratch, Voting};
 
 /// Short enough for one run a sample.
 const KMEANS_TIME: Duration = Duration::from_millis(100);
+
+/// A metric, and what its benchmarks are called.
+const METRICS: [(Metric, &str); 2] = [(Metric::ChiSquared, ""), (Metric::Euclidean, ", Euclidean")];
 
 /// One iteration is a tenth of the difference between eleven of them and one.
 fn kmeans(c: &mut Criterion) {
     let samples = histograms(100_000, 1);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
-    let fit = |max_iterations| {
-        let kmeans = KMeans { max_iterations, restarts: 1, tolerance: 0.0, ..KMeans::default() };
+    let fit = |metric, max_iterations| {
+        let kmeans =
+            KMeans { metric, max_iterations, restarts: 1, tolerance: 0.0, ..KMeans::default() };
         let start = Instant::now();
         pool.install(|| kmeans.fit(&samples, DIM)).expect("a codebook");
         start.elapsed()
@@ -25,12 +29,15 @@ fn kmeans(c: &mut Criterion) {
     let mut group = c.benchmark_group("K-means 100000x60, K = 90");
     // What is timed is a tenth of what is waited for.
     group.sample_size(10).sampling_mode(SamplingMode::Flat).measurement_time(KMEANS_TIME);
-    group.bench_function("one iteration", |b| {
-        b.iter_custom(|times| {
-            (0..times).map(|_| fit(11).saturating_sub(fit(1)) / 10).sum::<Duration>()
+    for (metric, name) in METRICS {
+        group.bench_function(format!("one iteration{name}"), |b| {
+            let tenth = || fit(metric, 11).saturating_sub(fit(metric, 1)) / 10;
+            b.iter_custom(|times| (0..times).map(|_| tenth()).sum::<Duration>());
         });
-    });
-    group.bench_function("seeding and one assignment", |b| b.iter(|| fit(1)));
+        group.bench_function(format!("seeding and one assignment{name}"), |b| {
+            b.iter(|| fit(metric, 1));
+        });
+    }
 }
 
 fn voting(c: &mut Criterion) {

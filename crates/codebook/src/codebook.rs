@@ -1,48 +1,96 @@
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    Error, Result,
-    packed::{Packed, Support},
-    samples,
-};
+use crate::{Error, Metric, Result, packed::Packed, samples, support::Support};
 
-/// Histograms that stand for those around them.
+/// Vectors that stand for those around them.
 ///
 /// Serialised as its parts, and checked as in [`Codebook::from_parts`] when it is read back.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts", into = "Parts")]
 pub struct Codebook {
+    metric: Metric,
     centres: Vec<f32>,
     dim: usize,
     scale: f64,
     pub(crate) packed: Packed,
 }
 
+/// Below this scale, exp(−χ²/s) would see the rounding of χ².
+const MIN_CHI_SQUARED: f64 = 1e-6;
+
 /// The centre nearest to a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
     /// Its index; the first of equals.
     pub centre: usize,
-    /// The χ² statistic of the two.
-    pub chi_squared: f32,
+    /// The distance of the two, as the codebook's metric has it.
+    pub distance: f32,
 }
 
 impl Codebook {
-    /// A codebook of centres given one after the other, each a histogram of `dim` bins.
+    /// A codebook of centres given one after the other, each a histogram of `dim` bins, that
+    /// compares by χ².
     ///
     /// `scale` is s, the χ² at which a vote's weight has fallen to 1/e.
     ///
     /// # Errors
     /// No centres, not a whole number of them, one that is not a histogram that sums to 1 within
     /// [`SUM_TOLERANCE`](crate::SUM_TOLERANCE), or a scale that is not finite and positive.
+    ///
+    /// ```
+    /// use phalanx_codebook::Codebook;
+    ///
+    /// let codebook = Codebook::from_parts(vec![1.0, 0.0, 0.25, 0.75], 2, 0.1)?;
+    /// assert_eq!((codebook.len(), codebook.dim()), (2, 2));
+    /// assert_eq!(codebook.nearest(&[0.3, 0.7])?.centre, 1);
+    /// # Ok::<(), phalanx_codebook::Error>(())
+    /// ```
     pub fn from_parts(centres: Vec<f32>, dim: usize, scale: f64) -> Result<Self> {
-        samples::check("centre", &centres, dim)?;
+        Self::with_metric(Metric::ChiSquared, centres, dim, scale)
+    }
+
+    /// A codebook like [`from_parts`](Self::from_parts)'s that compares by another metric, whose
+    /// distance `scale` is.
+    ///
+    /// # Errors
+    /// As of [`from_parts`](Self::from_parts); of the Euclidean metric's centres, numbers that are
+    /// not finite or beyond [`MAX_MAGNITUDE`](crate::MAX_MAGNITUDE).
+    ///
+    /// ```
+    /// use phalanx_codebook::{Codebook, Metric};
+    ///
+    /// let corners = vec![-5.0, 0.0, 5.0, 0.0];
+    /// let codebook = Codebook::with_metric(Metric::Euclidean, corners, 2, 1.0)?;
+    /// assert_eq!(codebook.nearest(&[4.0, 1.0])?.distance, 2.0);
+    /// # Ok::<(), phalanx_codebook::Error>(())
+    /// ```
+    pub fn with_metric(metric: Metric, centres: Vec<f32>, dim: usize, scale: f64) -> Result<Self> {
+        samples::check(metric, "centre", &centres, dim)?;
         if !(scale.is_finite() && scale > 0.0) {
             return Err(Error::BadScale { scale });
         }
-        let packed = Packed::new(&centres, dim);
-        Ok(Self { centres, dim, scale, packed })
+        let packed = Packed::new(metric, &centres, dim);
+        Ok(Self { metric, centres, dim, scale, packed })
+    }
+
+    /// A codebook whose scale is what its samples' mean distance came to.
+    pub(crate) fn from_fit(
+        metric: Metric,
+        centres: Vec<f32>,
+        dim: usize,
+        distortion: f64,
+    ) -> Result<Self> {
+        let least = match metric {
+            Metric::ChiSquared => MIN_CHI_SQUARED,
+            Metric::Euclidean => f64::from(f32::MIN_POSITIVE),
+        };
+        Self::with_metric(metric, centres, dim, distortion.max(least))
+    }
+
+    /// How vectors are compared.
+    pub fn metric(&self) -> Metric {
+        self.metric
     }
 
     /// The centres one after the other, [`len`](Self::len) × [`dim`](Self::dim) numbers.
@@ -56,12 +104,13 @@ impl Codebook {
         self.centres.len() / self.dim
     }
 
-    /// The number of bins of a histogram.
+    /// The length of a vector: the bins of a histogram.
     pub fn dim(&self) -> usize {
         self.dim
     }
 
-    /// The scale s of the votes: the mean χ² of the training samples to their nearest centres.
+    /// The scale s of the votes: the mean distance of the training samples to their nearest
+    /// centres.
     pub fn scale(&self) -> f64 {
         self.scale
     }
@@ -69,17 +118,17 @@ impl Codebook {
     /// The centre nearest to one sample.
     ///
     /// # Errors
-    /// A sample that is not one histogram of [`dim`](Self::dim) bins that sums to 1.
+    /// A sample of another length than [`dim`](Self::dim), or that the metric cannot compare: for χ²
+    /// one that is not a histogram that sums to 1.
     pub fn nearest(&self, sample: &[f32]) -> Result<Nearest> {
         if sample.len() != self.dim {
             return Err(Error::Shape { what: "sample", values: sample.len(), dim: self.dim });
         }
-        samples::check("sample", sample, self.dim)?;
+        samples::check(self.metric, "sample", sample, self.dim)?;
         let (mut support, mut distances) = (Support::default(), Vec::new());
-        support.find(sample);
-        let chi_squared = self.packed.whole().compare(Arch::new(), &support, &mut distances);
-        let centre = first_equal(&distances, chi_squared);
-        Ok(Nearest { centre, chi_squared })
+        self.packed.load(sample, &mut support);
+        let distance = self.packed.whole().compare(Arch::new(), &support, &mut distances);
+        Ok(Nearest { centre: first_equal(&distances, distance), distance })
     }
 }
 
@@ -91,6 +140,7 @@ pub(crate) fn first_equal(distances: &[f32], smallest: f32) -> usize {
 /// What is stored of a codebook.
 #[derive(Serialize, Deserialize)]
 struct Parts {
+    metric: Metric,
     dim: usize,
     scale: f64,
     centres: Vec<f32>,
@@ -100,12 +150,13 @@ impl TryFrom<Parts> for Codebook {
     type Error = Error;
 
     fn try_from(parts: Parts) -> Result<Self> {
-        Self::from_parts(parts.centres, parts.dim, parts.scale)
+        Self::with_metric(parts.metric, parts.centres, parts.dim, parts.scale)
     }
 }
 
 impl From<Codebook> for Parts {
     fn from(codebook: Codebook) -> Self {
-        Self { dim: codebook.dim, scale: codebook.scale, centres: codebook.centres }
+        let Codebook { metric, dim, scale, centres, .. } = codebook;
+        Self { metric, dim, scale, centres }
     }
 }

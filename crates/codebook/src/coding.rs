@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::{Codebook, Error, Result, Scratch, SoftCounts, Vlad, Voting};
+use crate::{Codebook, Error, Fisher, Result, Scratch, SoftCounts, Vlad, Voting};
 
 /// Something that turns any number of samples into a vector of fixed length, whatever their order.
 pub trait Coding {
@@ -13,8 +13,7 @@ pub trait Coding {
     /// The code of samples given one after the other, written to `out`.
     ///
     /// # Errors
-    /// No samples, not a whole number of them, one that is not a histogram that sums to 1, or an
-    /// output of another length than [`dim`](Self::dim).
+    /// No samples, not a whole number of them, one that the coding cannot compare, or an output of another length than [`dim`](Self::dim).
     fn encode(&self, samples: &[f32], scratch: &mut Scratch, out: &mut [f64]) -> Result<()>;
 }
 
@@ -22,7 +21,7 @@ pub trait Coding {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum AnyCoding {
-    /// Soft votes into the centres of a codebook: the paper's.
+    /// Votes into the centres of a codebook, hard or soft: the paper's.
     Counts {
         /// The centres.
         codebook: Codebook,
@@ -31,6 +30,8 @@ pub enum AnyCoding {
     },
     /// Residuals to the nearest centres.
     Vlad(Vlad),
+    /// Derivatives of a mixture of Gaussians.
+    Fisher(Fisher),
 }
 
 impl Coding for AnyCoding {
@@ -38,6 +39,7 @@ impl Coding for AnyCoding {
         match self {
             Self::Counts { codebook, .. } => codebook.dim(),
             Self::Vlad(vlad) => vlad.bins(),
+            Self::Fisher(fisher) => fisher.bins(),
         }
     }
 
@@ -45,6 +47,7 @@ impl Coding for AnyCoding {
         match self {
             Self::Counts { codebook, .. } => codebook.len(),
             Self::Vlad(vlad) => vlad.dim(),
+            Self::Fisher(fisher) => fisher.dim(),
         }
     }
 
@@ -54,6 +57,7 @@ impl Coding for AnyCoding {
                 SoftCounts { codebook, voting: *voting }.encode(samples, scratch, out)
             }
             Self::Vlad(vlad) => vlad.encode(samples, scratch, out),
+            Self::Fisher(fisher) => fisher.encode(samples, scratch, out),
         }
     }
 }
@@ -61,4 +65,15 @@ impl Coding for AnyCoding {
 /// Refuses an output of another length than a code's.
 pub(crate) fn check_length(out: &[f64], dim: usize) -> Result<()> {
     if out.len() == dim { Ok(()) } else { Err(Error::CodeLength { length: out.len(), dim }) }
+}
+
+/// Signed roots, brought to length 1. Samples are of f32, so that sums below its rounding are
+/// rounding themselves.
+pub(crate) fn normalise(code: &mut [f64]) {
+    let squared: f64 = code.iter().map(|value| value.abs()).sum();
+    let length = squared.sqrt();
+    for value in code {
+        let root = value.abs().sqrt().copysign(*value);
+        *value = if squared > f64::from(f32::EPSILON) { root / length } else { 0.0 };
+    }
 }

@@ -1,4 +1,4 @@
-use crate::SUM_TOLERANCE;
+use crate::{MAX_MAGNITUDE, SUM_TOLERANCE};
 
 /// The result of everything here that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -43,6 +43,18 @@ pub enum Error {
         /// The height found there.
         value: f32,
     },
+    /// A number of a vector that is not finite, or too large to be squared.
+    #[error("number {bin} of {what} {index} is {value}: not finite, or beyond ±{MAX_MAGNITUDE}")]
+    BadNumber {
+        /// "sample", "centre", "mean" or "variance".
+        what: &'static str,
+        /// The vector's index.
+        index: usize,
+        /// The number within it.
+        bin: usize,
+        /// What was found there.
+        value: f32,
+    },
     /// A histogram that does not sum to 1.
     #[error("{what} {index} sums to {sum}, not to 1 within {SUM_TOLERANCE}")]
     NotNormalised {
@@ -51,6 +63,12 @@ pub enum Error {
         /// The histogram's index.
         index: usize,
         /// Its sum.
+        sum: f64,
+    },
+    /// Weights of a mixture that are not positive, or do not sum to 1.
+    #[error("the weights, whose sum is {sum}, are not positive numbers with a sum of 1")]
+    BadWeights {
+        /// Their sum.
         sum: f64,
     },
     /// A scale that is not a finite positive number.

@@ -1,8 +1,10 @@
 use rand_pcg::Pcg64;
 
-use crate::{Codebook, Error, Result, lloyd::Assignment, packed::Packed, samples, seeding};
+use crate::{
+    Codebook, Error, Metric, Result, lloyd::Assignment, packed::Packed, samples, seeding::Seeding,
+};
 
-/// K-means with the χ² statistic: the settings, and [`fit`](KMeans::fit).
+/// K-means, with the χ² statistic unless told otherwise: the settings, and [`fit`](KMeans::fit).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KMeans {
     /// The number K of centres, at least 1.
@@ -15,12 +17,26 @@ pub struct KMeans {
     pub tolerance: f64,
     /// What the random numbers come from, together with the number of the restart.
     pub seed: u64,
+    /// How samples are compared.
+    pub metric: Metric,
+    /// How many samples are drawn for each centre to begin with, at least 1, the best of which is
+    /// taken. 1 is Arthur and Vassilvitskii's k-means++, more is their greedy variant, which takes
+    /// longer to begin and tends to end better: 2 + ln K is usual.
+    pub candidates: usize,
 }
 
 impl Default for KMeans {
-    /// Ninety centres, as in the paper; three restarts of at most 100 iterations; to 1e-4.
+    /// Ninety centres, as in the paper; three restarts of at most 100 iterations; to 1e-4; χ².
     fn default() -> Self {
-        Self { centres: 90, restarts: 3, max_iterations: 100, tolerance: 1e-4, seed: 0 }
+        Self {
+            centres: 90,
+            restarts: 3,
+            max_iterations: 100,
+            tolerance: 1e-4,
+            seed: 0,
+            metric: Metric::ChiSquared,
+            candidates: 1,
+        }
     }
 }
 
@@ -40,8 +56,8 @@ pub struct Fit {
 pub struct Report {
     /// Which restart it was, from 0.
     pub restart: usize,
-    /// After each assignment, the mean χ² of the samples to their nearest centres. It falls, but
-    /// for small rises: the mean of the samples is not quite the minimiser of their χ². A rise is
+    /// After each assignment, the mean distance of the samples to their nearest centres. It falls, with
+    /// χ² but for small rises: the mean of the samples is not quite the minimiser of their χ². A rise is
     /// some 1e-4 of the distortion on 20,000 shape contexts, and up to 1e-3 when the centres have
     /// only a few scattered samples each.
     pub distortions: Vec<f64>,
@@ -51,26 +67,20 @@ pub struct Report {
     pub reseeded: usize,
 }
 
-/// Below this scale, exp(−χ²/s) would see the rounding of χ².
-const MIN_SCALE: f64 = 1e-6;
-
 impl KMeans {
-    /// Finds centres for histograms of `dim` bins, given one after the other.
+    /// Finds centres for vectors of `dim` numbers, given one after the other.
     ///
     /// Runs in rayon's current thread pool; the result is the same, bit for bit, in any. Keeps a
     /// second copy of the samples while it runs.
     ///
     /// # Errors
-    /// A setting outside its range, no samples, not a whole number of them, one that is not a
-    /// histogram that sums to 1, or fewer different samples than centres.
+    /// A setting outside its range, no samples, not a whole number of them, one that the metric
+    /// cannot compare (for χ², that is not a histogram that sums to 1), or fewer different samples than centres.
     pub fn fit(&self, samples: &[f32], dim: usize) -> Result<Fit> {
         self.check()?;
-        samples::check("sample", samples, dim)?;
-        let count = samples.len() / dim;
-        if count < self.centres {
-            return Err(Error::TooFewDistinct { distinct: count, centres: self.centres });
-        }
-        let packed = Packed::new(samples, dim);
+        samples::check(self.metric, "sample", samples, dim)?;
+        samples::check_count(samples.len() / dim, self.centres)?;
+        let packed = Packed::new(self.metric, samples, dim);
         let (mut centres, mut report) = self.run(samples, dim, &packed, 0)?;
         for restart in 1..self.restarts {
             let (other_centres, other) = self.run(samples, dim, &packed, restart)?;
@@ -79,11 +89,11 @@ impl KMeans {
             }
         }
         let distortion = report.distortions.last().copied().unwrap_or_default();
-        let codebook = Codebook::from_parts(centres, dim, distortion.max(MIN_SCALE))?;
+        let codebook = Codebook::from_fit(self.metric, centres, dim, distortion)?;
         Ok(Fit { codebook, report })
     }
 
-    fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         let at_least_one = |name, value| match value {
             0 => Err(Error::Parameter { name, must_be: "at least 1" }),
             _ => Ok(()),
@@ -91,6 +101,7 @@ impl KMeans {
         at_least_one("centres", self.centres)?;
         at_least_one("restarts", self.restarts)?;
         at_least_one("max_iterations", self.max_iterations)?;
+        at_least_one("candidates", self.candidates)?;
         if !(0.0..=1.0).contains(&self.tolerance) {
             return Err(Error::Parameter { name: "tolerance", must_be: "between 0 and 1" });
         }
@@ -105,11 +116,12 @@ impl KMeans {
         restart: usize,
     ) -> Result<(Vec<f32>, Report)> {
         let mut rng = Pcg64::new(u128::from(self.seed), restart as u128);
-        let mut centres = seeding::seed(samples, dim, packed, self.centres, &mut rng)?;
+        let seeding = Seeding { metric: self.metric, samples, dim, packed };
+        let mut centres = seeding.seed(self.centres, self.candidates, &mut rng)?;
         let mut distances = vec![0.0; samples.len() / dim];
         let mut report = Report { restart, distortions: Vec::new(), converged: false, reseeded: 0 };
         loop {
-            let assignment = Assignment::new(samples, dim, &centres, &mut distances);
+            let assignment = Assignment::new(self.metric, samples, dim, &centres, &mut distances);
             let distortion = assignment.distortion();
             report.converged = report
                 .distortions

@@ -3,14 +3,11 @@
 use pulp::Arch;
 use rayon::prelude::*;
 
-use crate::{
-    codebook::first_equal,
-    packed::{LANES, Packed, Support},
-};
+use crate::{Metric, codebook::first_equal, packed::Packed, support::Support};
 
 /// Samples that are summed up together. Fixed, so that the rounding of the sums does not depend on
 /// the number of threads.
-pub(crate) const BLOCK: usize = 128 * LANES;
+pub(crate) const BLOCK: usize = 2048;
 
 /// What an assignment of the samples says of each centre.
 pub(crate) struct Assignment {
@@ -19,7 +16,7 @@ pub(crate) struct Assignment {
     sums: Vec<f64>,
     /// Their number.
     counts: Vec<usize>,
-    /// The sum of their χ² to their centres.
+    /// The sum of their distances to their centres.
     total: f64,
 }
 
@@ -28,9 +25,15 @@ impl Assignment {
         Self { dim, sums: vec![0.0; centres * dim], counts: vec![0; centres], total: 0.0 }
     }
 
-    /// Assigns each sample to its nearest centre, and writes the χ² between the two.
-    pub(crate) fn new(samples: &[f32], dim: usize, centres: &[f32], distances: &mut [f32]) -> Self {
-        let packed = Packed::new(centres, dim);
+    /// Assigns each sample to its nearest centre, and writes the distance of the two.
+    pub(crate) fn new(
+        metric: Metric,
+        samples: &[f32],
+        dim: usize,
+        centres: &[f32],
+        distances: &mut [f32],
+    ) -> Self {
+        let packed = Packed::new(metric, centres, dim);
         let count = centres.len() / dim;
         let blocks: Vec<Self> = samples
             .par_chunks(BLOCK * dim)
@@ -50,11 +53,15 @@ impl Assignment {
         let arch = Arch::new();
         let mut block = Self::empty(count, dim);
         let (mut support, mut to_centres) = (Support::default(), Vec::new());
+        let mut nearest = Vec::with_capacity(BLOCK);
         for (sample, distance) in samples.chunks_exact(dim).zip(distances) {
-            support.find(sample);
+            packed.load(sample, &mut support);
             *distance = packed.whole().compare(arch, &support, &mut to_centres);
-            let centre = first_equal(&to_centres, *distance);
+            nearest.push(first_equal(&to_centres, *distance));
             block.total += f64::from(*distance);
+        }
+        // In a loop of its own: centres and sums together are more than the nearest cache holds.
+        for (sample, centre) in samples.chunks_exact(dim).zip(nearest) {
             block.counts[centre] += 1;
             let sums = &mut block.sums[centre * dim..(centre + 1) * dim];
             for (sum, &height) in sums.iter_mut().zip(sample) {
@@ -71,7 +78,7 @@ impl Assignment {
         self
     }
 
-    /// The mean χ² of the samples to their centres.
+    /// The mean distance of the samples to their centres.
     pub(crate) fn distortion(&self) -> f64 {
         self.total / self.counts.iter().sum::<usize>() as f64
     }
@@ -102,6 +109,20 @@ impl Assignment {
         }
         empty
     }
+
+    /// Moves each centre to the mean of its samples and of the `counts` that it has had before,
+    /// which then count these too.
+    pub(crate) fn draw_centres(&self, centres: &mut [f32], counts: &mut [usize]) {
+        let sums = self.sums.chunks_exact(self.dim).zip(&self.counts);
+        let centres = centres.chunks_exact_mut(self.dim).zip(counts);
+        for ((centre, had), (sums, &new)) in centres.zip(sums) {
+            *had += new;
+            let had = (*had).max(1) as f64;
+            for (value, sum) in centre.iter_mut().zip(sums) {
+                *value += ((sum - new as f64 * f64::from(*value)) / had) as f32;
+            }
+        }
+    }
 }
 
 /// The index of the largest distance, the first of equals.
@@ -119,7 +140,7 @@ mod tests {
         let samples = [[1.0, 0.0], [0.9, 0.1], [0.2, 0.8], [0.0, 1.0]].concat();
         let mut centres = [[1.0, 0.0]; 3].concat();
         let mut distances = [0.0; 4];
-        let assignment = Assignment::new(&samples, 2, &centres, &mut distances);
+        let assignment = Assignment::new(Metric::ChiSquared, &samples, 2, &centres, &mut distances);
         assert_eq!(assignment.counts, [4, 0, 0]);
         assert_eq!(assignment.move_centres(&samples, &mut centres, &mut distances), 2);
         assert_eq!(centres, [[0.525, 0.475], [0.0, 1.0], [0.2, 0.8]].concat());

@@ -1,164 +1,242 @@
-//! Histograms laid out so that another one meets many of them at once.
+//! Vectors laid out so that another one meets many of them at once.
 #![allow(clippy::inline_always, reason = "must be compiled with the caller's instruction set")]
 
 use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
-/// Histograms that are compared together.
+use crate::{
+    Metric,
+    support::{Bin, Pair, Support},
+};
+
+/// Vectors that are compared together.
 pub(crate) const LANES: usize = 16;
 
-/// One number for each histogram of a block.
-type Lanes = [f32; LANES];
+/// One number for each vector of a block.
+pub(crate) type Lanes = [f32; LANES];
 
-/// Heights up to this count as zero. They would change χ² by less than f32 can show, and without
-/// them no product of two denominators underflows.
-const NEGLIGIBLE: f32 = 1e-12;
-
-/// Histograms in blocks of [`LANES`], bin by bin within a block. The last block is filled up with
-/// histograms infinitely far from everything.
+/// Vectors in blocks of [`LANES`], number by number within a block. The last block is filled up with
+/// vectors infinitely far from everything.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Packed {
+    metric: Metric,
     dim: usize,
+    /// What was taken away from the vectors; see [`origin`].
+    origin: Option<Vec<f32>>,
     /// `blocks[block * dim + bin][lane]`.
     blocks: Vec<Lanes>,
-    /// Half of each histogram's sum.
-    half_masses: Vec<Lanes>,
+    /// What is added to each vector's distance: half a histogram's sum for χ², the square of
+    /// the length otherwise.
+    offsets: Vec<Lanes>,
 }
 
 /// Some consecutive blocks of a [`Packed`].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tile<'a> {
+    metric: Metric,
     dim: usize,
     blocks: &'a [Lanes],
-    half_masses: &'a [Lanes],
+    offsets: &'a [Lanes],
 }
 
 impl Packed {
-    /// Packs histograms given one after the other.
-    pub(crate) fn new(histograms: &[f32], dim: usize) -> Self {
-        let count = (histograms.len() / dim).div_ceil(LANES);
-        let mut packed = Self {
-            dim,
-            blocks: vec![[0.0; LANES]; count * dim],
-            half_masses: vec![[f32::INFINITY; LANES]; count],
+    /// Packs vectors given one after the other.
+    pub(crate) fn new(metric: Metric, vectors: &[f32], dim: usize) -> Self {
+        let count = (vectors.len() / dim).div_ceil(LANES);
+        let origin = match metric {
+            Metric::ChiSquared => None,
+            Metric::Euclidean => origin(vectors, dim),
         };
-        for (index, histogram) in histograms.chunks_exact(dim).enumerate() {
+        let mut packed = Self {
+            metric,
+            dim,
+            origin,
+            blocks: vec![[0.0; LANES]; count * dim],
+            offsets: vec![[f32::INFINITY; LANES]; count],
+        };
+        let mut moved = Vec::with_capacity(dim);
+        for (index, vector) in vectors.chunks_exact(dim).enumerate() {
             let (block, lane) = (index / LANES, index % LANES);
-            packed.half_masses[block][lane] = 0.5 * histogram.iter().sum::<f32>();
-            for (bin, &height) in histogram.iter().enumerate() {
-                packed.blocks[block * dim + bin][lane] = height;
+            packed.move_vector(vector, &mut moved);
+            packed.offsets[block][lane] = match metric {
+                Metric::ChiSquared => 0.5 * moved.iter().sum::<f32>(),
+                Metric::Euclidean => moved.iter().map(|value| value * value).sum(),
+            };
+            for (bin, &value) in moved.iter().enumerate() {
+                packed.blocks[block * dim + bin][lane] = value;
             }
         }
         packed
     }
 
-    /// All blocks.
-    pub(crate) fn whole(&self) -> Tile<'_> {
-        Tile { dim: self.dim, blocks: &self.blocks, half_masses: &self.half_masses }
+    /// Prepares a vector to be compared with these.
+    pub(crate) fn load(&self, vector: &[f32], support: &mut Support) {
+        match self.metric {
+            Metric::ChiSquared => support.find_filled(vector),
+            Metric::Euclidean => {
+                let mut moved = std::mem::take(&mut support.moved);
+                let is_moved = self.origin.is_some();
+                if is_moved {
+                    self.move_vector(vector, &mut moved);
+                }
+                support.find_terms(if is_moved { &moved } else { vector });
+                support.moved = moved;
+            }
+        }
     }
 
-    /// The blocks in tiles of at most `histograms` (a multiple of [`LANES`]) each.
-    pub(crate) fn tiles(&self, histograms: usize) -> impl IndexedParallelIterator<Item = Tile<'_>> {
-        let blocks = self.blocks.par_chunks(histograms / LANES * self.dim);
-        let half_masses = self.half_masses.par_chunks(histograms / LANES);
-        blocks.zip(half_masses).map(|(blocks, half_masses)| Tile {
-            dim: self.dim,
-            blocks,
-            half_masses,
-        })
+    fn move_vector(&self, vector: &[f32], moved: &mut Vec<f32>) {
+        moved.clear();
+        match &self.origin {
+            Some(origin) => moved.extend(vector.iter().zip(origin).map(|(v, o)| v - o)),
+            None => moved.extend_from_slice(vector),
+        }
+    }
+
+    /// All blocks.
+    pub(crate) fn whole(&self) -> Tile<'_> {
+        let Self { metric, dim, ref blocks, ref offsets, .. } = *self;
+        Tile { metric, dim, blocks, offsets }
+    }
+
+    /// The blocks in tiles of at most `vectors` (a multiple of [`LANES`]) each.
+    pub(crate) fn tiles(&self, vectors: usize) -> impl IndexedParallelIterator<Item = Tile<'_>> {
+        let blocks = self.blocks.par_chunks(vectors / LANES * self.dim);
+        let offsets = self.offsets.par_chunks(vectors / LANES);
+        let (metric, dim) = (self.metric, self.dim);
+        blocks.zip(offsets).map(move |(blocks, offsets)| Tile { metric, dim, blocks, offsets })
     }
 }
 
 impl Tile<'_> {
-    /// Writes χ² to every histogram, in order and followed by infinities, and returns the smallest.
+    /// Writes the distance to every vector, in order and followed by infinities, and returns the
+    /// smallest.
     pub(crate) fn compare(self, arch: Arch, to: &Support, distances: &mut Vec<f32>) -> f32 {
-        distances.resize(self.half_masses.len() * LANES, 0.0);
-        arch.dispatch(Compare { tile: self, to, distances })
-    }
-}
-
-/// The filled bins of a histogram, two by two.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Support {
-    bins: Vec<Bin>,
-    pairs: Vec<Pair>,
-    mass: f32,
-}
-
-#[derive(Debug, Clone, Copy, Default)]
-struct Bin {
-    index: usize,
-    height: f32,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Pair {
-    a: Bin,
-    b: Bin,
-    /// a²
-    squared: f32,
-    /// b² / a²
-    ratio: f32,
-}
-
-impl Support {
-    pub(crate) fn find(&mut self, histogram: &[f32]) {
-        self.bins.resize(histogram.len(), Bin::default());
-        // Without a branch for the processor to guess.
-        let mut filled = 0;
-        for (index, &height) in histogram.iter().enumerate() {
-            self.bins[filled] = Bin { index, height };
-            filled += usize::from(height > NEGLIGIBLE);
-        }
-        let bins = &self.bins[..filled];
-        self.mass = bins.iter().map(|bin| bin.height).sum();
-        self.pairs.clear();
-        self.pairs.extend(bins.chunks(2).map(|bins| Pair::new(bins[0], bins.get(1).copied())));
-    }
-}
-
-impl Pair {
-    fn new(a: Bin, b: Option<Bin>) -> Self {
-        let squared = a.height * a.height;
-        match b {
-            Some(b) => Self { a, b, squared, ratio: b.height * b.height / squared },
-            // Any b will do that keeps its denominator from zero.
-            None => Self { a, b: Bin { index: a.index, height: 1.0 }, squared, ratio: 0.0 },
+        distances.resize(self.offsets.len() * LANES, 0.0);
+        match self.metric {
+            Metric::ChiSquared => self.dispatch(arch, to, distances, ChiSquared),
+            Metric::Euclidean => self.dispatch(arch, to, distances, Euclidean),
         }
     }
+
+    fn dispatch<S: Sums>(self, arch: Arch, to: &Support, distances: &mut [f32], metric: S) -> f32 {
+        arch.dispatch(Compare { tile: self, to, distances, _sums: metric })
+    }
 }
 
-struct Compare<'a> {
+/// What a metric adds up for all vectors of some blocks. A trait and no closure, which would not be
+/// compiled for the caller's instruction set.
+trait Sums {
+    /// `N` blocks at once, so that additions to one need not wait for the last.
+    fn of_blocks<const N: usize>(blocks: &[Lanes], dim: usize, to: &Support) -> [Lanes; N];
+}
+
+struct ChiSquared;
+
+impl Sums for ChiSquared {
+    /// With h c / (h + c) = h − h² / (h + c), χ² = ½ Σ (h − c)² / (h + c) is
+    /// ½ Σc − 3/2 Σh + 2 Σ h² / (h + c), whose last sum needs the filled bins of h only, and whose
+    /// first is the offset of c.
+    #[inline(always)]
+    fn of_blocks<const N: usize>(blocks: &[Lanes], dim: usize, to: &Support) -> [Lanes; N] {
+        let mut sums = [[0.0; LANES]; N];
+        for (sums, block) in sums.iter_mut().zip(blocks.chunks_exact(dim)) {
+            *sums = overlap(block, &to.pairs);
+            for sum in sums {
+                *sum = -1.5 * to.mass + 2.0 * *sum;
+            }
+        }
+        sums
+    }
+}
+
+struct Euclidean;
+
+impl Sums for Euclidean {
+    /// Σ (h − c)² is Σ c² + Σ h² − 2 Σ h c, whose last sum needs the h only that are not zero, and
+    /// whose first is the offset of c.
+    #[inline(always)]
+    fn of_blocks<const N: usize>(blocks: &[Lanes], dim: usize, to: &Support) -> [Lanes; N] {
+        let mut sums = [[to.mass; LANES]; N];
+        let blocks: [&[Lanes]; N] = std::array::from_fn(|block| &blocks[block * dim..][..dim]);
+        for &Bin { index, height } in to.terms() {
+            for (sums, block) in sums.iter_mut().zip(blocks) {
+                for (sum, value) in sums.iter_mut().zip(&block[index]) {
+                    *sum -= height * value;
+                }
+            }
+        }
+        sums
+    }
+}
+
+/// Vectors further from zero, squared, than so many times their squared distance from their mean are
+/// compared with the mean taken away, lest single precision lose what differs between them.
+const FAR: f64 = 64.0;
+
+/// The mean of vectors that are far from zero in comparison with their spread.
+fn origin(vectors: &[f32], dim: usize) -> Option<Vec<f32>> {
+    let count = (vectors.len() / dim) as f64;
+    let mut mean = vec![0.0_f64; dim];
+    let mut squares = 0.0;
+    for vector in vectors.chunks_exact(dim) {
+        for (mean, &value) in mean.iter_mut().zip(vector) {
+            *mean += f64::from(value) / count;
+            squares += f64::from(value) * f64::from(value) / count;
+        }
+    }
+    let of_mean: f64 = mean.iter().map(|mean| mean * mean).sum();
+    let is_far = of_mean > FAR * (squares - of_mean);
+    is_far.then(|| mean.into_iter().map(|mean| mean as f32).collect())
+}
+
+/// Blocks that are compared together.
+const TOGETHER: usize = 3;
+
+struct Compare<'a, S> {
     tile: Tile<'a>,
     to: &'a Support,
     distances: &'a mut [f32],
+    _sums: S,
 }
 
-impl NullaryFnOnce for Compare<'_> {
+impl<S: Sums> NullaryFnOnce for Compare<'_, S> {
     type Output = f32;
 
-    /// With h c / (h + c) = h − h² / (h + c), χ² = ½ Σ (h − c)² / (h + c) is
-    /// ½ Σc − 3/2 Σh + 2 Σ h² / (h + c), whose last sum needs the filled bins of h only.
     #[inline(always)]
     fn call(self) -> f32 {
-        let Tile { dim, blocks, half_masses } = self.tile;
-        let offset = -1.5 * self.to.mass;
+        let Tile { dim, blocks, offsets, .. } = self.tile;
         let (distances, _) = self.distances.as_chunks_mut::<LANES>();
+        let whole = offsets.len() / TOGETHER * TOGETHER;
+        let (blocks, last_blocks) = blocks.split_at(whole * dim);
+        let (offsets, last_offsets) = offsets.as_chunks::<TOGETHER>();
+        let (distances, last_distances) = distances.as_chunks_mut::<TOGETHER>();
         let mut smallest = [f32::INFINITY; LANES];
-        for ((block, half_masses), distances) in
-            blocks.chunks_exact(dim).zip(half_masses).zip(distances)
+        for ((blocks, offsets), distances) in
+            blocks.chunks_exact(TOGETHER * dim).zip(offsets).zip(distances)
         {
-            let sums = overlap(block, &self.to.pairs);
-            for lane in 0..LANES {
-                let distance = half_masses[lane] + offset + 2.0 * sums[lane];
-                // Rounding can make it negative.
-                distances[lane] = if distance > 0.0 { distance } else { 0.0 };
-            }
-            for (least, &mut distance) in smallest.iter_mut().zip(distances) {
-                *least = if distance < *least { distance } else { *least };
-            }
+            *distances = S::of_blocks(blocks, dim, self.to);
+            finish(distances, offsets, &mut smallest);
+        }
+        let last = last_blocks.chunks_exact(dim).zip(last_offsets).zip(last_distances);
+        for ((block, offsets), distances) in last {
+            let mut one: [Lanes; 1] = S::of_blocks(block, dim, self.to);
+            finish(&mut one, &[*offsets], &mut smallest);
+            [*distances] = one;
         }
         smallest.into_iter().fold(f32::INFINITY, f32::min)
+    }
+}
+
+/// Adds the offsets to sums, and lowers the smallest of each lane.
+#[inline(always)]
+fn finish<const N: usize>(sums: &mut [Lanes; N], offsets: &[Lanes; N], smallest: &mut Lanes) {
+    for (sums, offsets) in sums.iter_mut().zip(offsets) {
+        for ((sum, offset), least) in sums.iter_mut().zip(offsets).zip(&mut *smallest) {
+            // Rounding can make it negative.
+            *sum = (*sum + offset).max(0.0);
+            *least = if *sum < *least { *sum } else { *least };
+        }
     }
 }
 

@@ -1,20 +1,46 @@
-use crate::{Error, Result};
+use crate::{Error, Metric, Result};
 
 /// How far the sum of a histogram may be from 1.
 pub const SUM_TOLERANCE: f64 = 1e-3;
 
-/// Checks that `values` are histograms of `dim` bins, one after the other, and at least one.
-pub(crate) fn check(what: &'static str, values: &[f32], dim: usize) -> Result<()> {
+/// The largest magnitude of a number, so that sums of squares stay finite.
+pub const MAX_MAGNITUDE: f32 = 1e15;
+
+/// Checks that `values` are vectors of `dim` numbers that the metric can compare, one after the
+/// other, and at least one.
+pub(crate) fn check(metric: Metric, what: &'static str, values: &[f32], dim: usize) -> Result<()> {
     if values.is_empty() {
         return Err(Error::Empty { what });
     }
     if dim == 0 || !values.len().is_multiple_of(dim) {
         return Err(Error::Shape { what, values: values.len(), dim });
     }
-    values.chunks_exact(dim).enumerate().try_for_each(|(i, h)| check_one(what, i, h))
+    let mut vectors = values.chunks_exact(dim).enumerate();
+    match metric {
+        Metric::ChiSquared => vectors.try_for_each(|(i, h)| check_histogram(what, i, h)),
+        Metric::Euclidean => vectors.try_for_each(|(i, v)| check_vector(what, i, v)),
+    }
 }
 
-fn check_one(what: &'static str, index: usize, histogram: &[f32]) -> Result<()> {
+/// Refuses fewer samples than centres.
+pub(crate) fn check_count(samples: usize, centres: usize) -> Result<()> {
+    if samples < centres {
+        return Err(Error::TooFewDistinct { distinct: samples, centres });
+    }
+    Ok(())
+}
+
+fn check_vector(what: &'static str, index: usize, vector: &[f32]) -> Result<()> {
+    // A NaN compares false.
+    let usable = |value: &f32| value.abs() <= MAX_MAGNITUDE;
+    if vector.iter().fold(true, |all, value| all & usable(value)) {
+        return Ok(());
+    }
+    let bin = vector.iter().position(|value| !usable(value)).unwrap_or_default();
+    Err(Error::BadNumber { what, index, bin, value: vector[bin] })
+}
+
+fn check_histogram(what: &'static str, index: usize, histogram: &[f32]) -> Result<()> {
     let (sum, smallest) = sum_and_smallest(histogram);
     // Whatever is not finite makes the sum so too.
     if smallest < 0.0 || !sum.is_finite() {

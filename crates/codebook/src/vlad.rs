@@ -2,7 +2,10 @@ use pulp::Arch;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Codebook, Coding, Result, Scratch, codebook::first_equal, coding::check_length, samples,
+    Codebook, Coding, Result, Scratch,
+    codebook::first_equal,
+    coding::{check_length, normalise},
+    samples,
 };
 
 /// The vector of locally aggregated descriptors: what is left of the samples when their nearest
@@ -32,12 +35,12 @@ impl Coding for Vlad {
     fn encode(&self, samples: &[f32], scratch: &mut Scratch, out: &mut [f64]) -> Result<()> {
         let bins = self.bins();
         check_length(out, self.dim())?;
-        samples::check("sample", samples, bins)?;
+        samples::check(self.codebook.metric(), "sample", samples, bins)?;
         out.fill(0.0);
         let Scratch { support, distances, .. } = scratch;
         let arch = Arch::new();
         for sample in samples.chunks_exact(bins) {
-            support.find(sample);
+            self.codebook.packed.load(sample, support);
             let smallest = self.codebook.packed.whole().compare(arch, support, distances);
             let start = first_equal(distances, smallest) * bins;
             let centre = &self.codebook.centres()[start..start + bins];
@@ -49,16 +52,5 @@ impl Coding for Vlad {
         }
         normalise(out);
         Ok(())
-    }
-}
-
-/// Signed roots, brought to length 1. Residuals are of f32, so that sums below its rounding are
-/// rounding themselves.
-fn normalise(code: &mut [f64]) {
-    let squared: f64 = code.iter().map(|value| value.abs()).sum();
-    let length = squared.sqrt();
-    for value in code {
-        let root = value.abs().sqrt().copysign(*value);
-        *value = if squared > f64::from(f32::EPSILON) { root / length } else { 0.0 };
     }
 }

@@ -1,14 +1,19 @@
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
 
-use crate::{Codebook, Coding, Error, Result, packed::Support, samples};
+use crate::{Codebook, Coding, Error, Result, Scratch, samples};
 
 /// How samples vote.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Voting {
-    /// Into how many of the nearest centres each sample votes, 1 to K. With 1 every vote is whole:
-    /// a histogram of nearest centres.
+    /// Into how many of the nearest centres each sample votes, 1 to K; with 1, as in
+    /// [`HARD`](Self::HARD), every vote is whole: a histogram of nearest centres.
     pub neighbours: usize,
+}
+
+impl Voting {
+    /// Hard assignment: each sample's whole vote goes to the nearest centre.
+    pub const HARD: Self = Self { neighbours: 1 };
 }
 
 impl Default for Voting {
@@ -16,15 +21,6 @@ impl Default for Voting {
     fn default() -> Self {
         Self { neighbours: 5 }
     }
-}
-
-/// The memory that coding needs, kept from one call to the next.
-#[derive(Debug, Clone, Default)]
-pub struct Scratch {
-    pub(crate) support: Support,
-    pub(crate) distances: Vec<f32>,
-    ranks: Vec<Rank>,
-    weights: Vec<f64>,
 }
 
 /// Soft votes into a codebook's centres, as a coding like any other.
@@ -54,12 +50,13 @@ impl Codebook {
     /// The histogram of the samples' votes (Agarwal and Triggs, 2006; de Campos and Murray, 2006,
     /// section 2), written to `out`, one number per centre.
     ///
-    /// `samples` are histograms of [`dim`](Self::dim) bins one after the other. Each votes into its
-    /// nearest centres with weights exp(−χ²/s) that sum to 1, s being the [`scale`](Self::scale);
+    /// `samples` are vectors of [`dim`](Self::dim) numbers one after the other. Each votes into its
+    /// nearest centres with weights exp(−d/s) that sum to 1, d being the distance (χ², or the squared Euclidean
+    /// one) and s the [`scale`](Self::scale);
     /// the votes are divided by the number of samples, so that `out` sums to 1 too.
     ///
     /// # Errors
-    /// No samples, not a whole number of them, one that is not a histogram that sums to 1, no
+    /// No samples, not a whole number of them, one that the metric cannot compare, no
     /// neighbours or more than centres, or an output of another length than the centres'.
     pub fn soft_assign(
         &self,
@@ -76,18 +73,17 @@ impl Codebook {
         if out.len() != centres {
             return Err(Error::OutputLength { length: out.len(), centres });
         }
-        samples::check("sample", samples, self.dim())?;
+        samples::check(self.metric(), "sample", samples, self.dim())?;
 
         out.fill(0.0);
         let Scratch { support, distances, ranks, weights } = scratch;
         let arch = Arch::new();
         for sample in samples.chunks_exact(self.dim()) {
-            support.find(sample);
+            self.packed.load(sample, support);
             let smallest = self.packed.whole().compare(arch, support, distances);
             let nearest = find_nearest(&distances[..centres], neighbours, ranks);
             // The nearest one's weight is 1, however far it is.
-            let weight =
-                |rank: &Rank| (f64::from(smallest - rank.chi_squared()) / self.scale()).exp();
+            let weight = |rank: &Rank| (f64::from(smallest - rank.distance()) / self.scale()).exp();
             weights.clear();
             weights.extend(nearest.iter().map(weight));
             let total: f64 = weights.iter().sum();
@@ -106,14 +102,14 @@ impl Codebook {
 /// A centre's distance and, to settle ties, its index, in one number that orders them: the bits of
 /// floats that are not negative are in the order of the floats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Rank(u64);
+pub(crate) struct Rank(u64);
 
 impl Rank {
-    fn new(centre: usize, chi_squared: f32) -> Self {
-        Self(u64::from(chi_squared.to_bits()) << 32 | centre as u64)
+    fn new(centre: usize, distance: f32) -> Self {
+        Self(u64::from(distance.to_bits()) << 32 | centre as u64)
     }
 
-    fn chi_squared(self) -> f32 {
+    fn distance(self) -> f32 {
         f32::from_bits((self.0 >> 32) as u32)
     }
 

@@ -49,7 +49,7 @@ proptest! {
     fn an_iteration_agrees_with_the_slow_version(seed: u64, centres in 2..40_usize) {
         let samples = histograms(600, seed);
         let run = |max_iterations| {
-            let kmeans = KMeans { centres, restarts: 1, max_iterations, seed, tolerance: 0.0 };
+            let kmeans = KMeans { centres, restarts: 1, max_iterations, seed, tolerance: 0.0, ..KMeans::default() };
             fit(kmeans, &samples)
         };
         let (seeds, moved) = (run(1).codebook, run(2));
@@ -73,7 +73,7 @@ proptest! {
     #[test]
     fn seeds_are_different_samples(seed: u64, centres in 2..90_usize) {
         let samples = histograms(200, seed);
-        let kmeans = KMeans { centres, restarts: 1, max_iterations: 1, seed, tolerance: 0.0 };
+        let kmeans = KMeans { centres, restarts: 1, max_iterations: 1, seed, tolerance: 0.0, ..KMeans::default() };
         let codebook = fit(kmeans, &samples).codebook;
         let seeds: Vec<&[f32]> = codebook.centres().chunks_exact(DIM).collect();
         for (i, seed) in seeds.iter().enumerate() {
@@ -146,6 +146,7 @@ fn settings_out_of_range_and_bad_samples_are_refused() {
         KMeans { centres: 0, ..good },
         KMeans { restarts: 0, ..good },
         KMeans { max_iterations: 0, ..good },
+        KMeans { candidates: 0, ..good },
         KMeans { tolerance: -0.1, ..good },
         KMeans { tolerance: f64::NAN, ..good },
     ] {

@@ -44,11 +44,23 @@ fn hostile_parts_are_refused_by_name() {
 #[test]
 fn hostile_text_is_refused() {
     let read = |value: Value| serde_json::from_value::<Codebook>(value);
-    assert!(read(json!({ "dim": 2, "scale": 0.1, "centres": [0.5, 0.5] })).is_ok());
-    assert!(read(json!({ "dim": 3, "scale": 0.1, "centres": [0.5, 0.5] })).is_err());
-    assert!(read(json!({ "dim": 2, "scale": -0.1, "centres": [0.5, 0.5] })).is_err());
-    assert!(read(json!({ "dim": 2, "scale": 0.1, "centres": [0.5, 0.9] })).is_err());
-    assert!(read(json!({ "dim": 2, "scale": 0.1 })).is_err());
+    assert!(
+        read(json!({ "metric": "ChiSquared", "dim": 2, "scale": 0.1, "centres": [0.5, 0.5] }))
+            .is_ok()
+    );
+    assert!(
+        read(json!({ "metric": "ChiSquared", "dim": 3, "scale": 0.1, "centres": [0.5, 0.5] }))
+            .is_err()
+    );
+    assert!(
+        read(json!({ "metric": "ChiSquared", "dim": 2, "scale": -0.1, "centres": [0.5, 0.5] }))
+            .is_err()
+    );
+    assert!(
+        read(json!({ "metric": "ChiSquared", "dim": 2, "scale": 0.1, "centres": [0.5, 0.9] }))
+            .is_err()
+    );
+    assert!(read(json!({ "metric": "ChiSquared", "dim": 2, "scale": 0.1 })).is_err());
 }
 
 proptest! {

@@ -81,7 +81,7 @@ proptest! {
         for sample in samples.chunks_exact(codebook.dim()) {
             let nearest = codebook.nearest(sample)?;
             let slow = slow_ranking(&codebook, sample)[0].0;
-            prop_assert!((f64::from(nearest.chi_squared) - slow).abs() < 2e-6);
+            prop_assert!((f64::from(nearest.distance) - slow).abs() < 2e-6);
             let centre = &codebook.centres()[nearest.centre * codebook.dim()..][..codebook.dim()];
             prop_assert!((chi_squared(sample, centre) - slow).abs() < 2e-6);
         }

@@ -194,7 +194,7 @@ fn few_samples_are_taken_evenly() {
     let spaced = flat.chunks_exact(BINS).step_by(20);
     for histogram in spaced {
         let nearest = few.codebooks()[0].nearest(histogram).unwrap();
-        assert!(nearest.chi_squared < 1e-6, "{}", nearest.chi_squared);
+        assert!(nearest.distance < 1e-6, "{}", nearest.distance);
     }
 }
 

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::container::Container;
 use crate::{Descriptor, Estimator, Regression, Result};
 
-const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 4 };
+const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 5 };
 
 /// What the payload holds.
 #[derive(Serialize, Deserialize)]

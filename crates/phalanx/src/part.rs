@@ -15,7 +15,7 @@ use crate::{
     Shard, Training, describe_each, describe_scenes, targets,
 };
 
-const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 2 };
+const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 3 };
 
 /// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
 /// and to [`finish`](Self::finish) the estimator. Its size depends on the regressor's columns and

@@ -1,4 +1,5 @@
 use crate::points::{MAX_COORDINATE, MAX_POINTS, MIN_MEAN_DISTANCE, MIN_POINTS};
+use crate::{BINS, MAX_MATCHED};
 
 /// The result of everything here that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -82,5 +83,21 @@ pub enum Error {
     AtCentroid {
         /// Its index in the contour.
         point: usize,
+    },
+    /// Numbers that are not a whole number of contexts, none of them, or too many to be matched.
+    #[error("{values} numbers do not make 1 to {MAX_MATCHED} contexts of {BINS} bins")]
+    NotContexts {
+        /// How many numbers were given.
+        values: usize,
+    },
+    /// A height of a context that is negative or not finite.
+    #[error("bin {bin} of context {context} is {value}: heights are finite and not negative")]
+    BadHeight {
+        /// The context's index.
+        context: usize,
+        /// The bin within it.
+        bin: usize,
+        /// The height found there.
+        value: f32,
     },
 }

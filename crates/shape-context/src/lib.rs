@@ -1,9 +1,12 @@
 #![doc = include_str!("../README.md")]
 
+mod assignment;
 mod axis;
+mod bilinear;
 mod error;
 mod forearm;
 mod grid;
+mod matching;
 mod orientation;
 mod pairs;
 mod points;
@@ -16,7 +19,8 @@ pub use axis::{Axis, hand_axis};
 pub use error::{Error, Result};
 pub use forearm::{ForearmAxis, forearm_axis};
 pub use grid::{BINS, RINGS, SECTORS, ring_radii, sector_edges};
+pub use matching::{MAX_MATCHED, Matcher, Matching};
 pub use orientation::{Chain, Orientation};
 pub use points::{MAX_COORDINATE, MAX_POINTS, MIN_MEAN_DISTANCE, MIN_POINTS, mean_distance};
 pub use resample::resample;
-pub use workspace::{Descriptors, ShapeContexts};
+pub use workspace::{Binning, Descriptors, ShapeContexts};

@@ -1,18 +1,31 @@
 use crate::{
-    BINS, Error, Orientation, Result,
+    BINS, Error, Orientation, Result, bilinear,
     grid::SLOTS,
     orientation::Axes,
     pairs::{self, Counts},
     points::Columns,
 };
 
+/// How a point votes for where it is seen.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub enum Binning {
+    /// Into the one bin in which it lies.
+    #[default]
+    Nearest,
+    /// Into the two nearest rings and the two nearest sectors, by how near their middles are, so
+    /// that no histogram jumps where a point crosses an edge. Takes several times as long.
+    Bilinear,
+}
+
 /// Computes shape contexts, keeping its memory from one contour to the next.
 #[derive(Debug, Clone)]
 pub struct ShapeContexts {
+    binning: Binning,
     points: Columns,
     axes: Axes,
     slots: Vec<u64>,
     counts: Vec<Counts>,
+    weights: Vec<[f64; BINS]>,
     histograms: Vec<f32>,
 }
 
@@ -23,13 +36,30 @@ impl Default for ShapeContexts {
 }
 
 impl ShapeContexts {
-    /// An empty workspace.
+    /// An empty workspace; each point votes into one bin.
     pub fn new() -> Self {
+        Self::with_binning(Binning::Nearest)
+    }
+
+    /// An empty workspace whose points vote as told.
+    ///
+    /// ```
+    /// use phalanx_shape_context::{Binning, Orientation, ShapeContexts};
+    ///
+    /// let points = [[0.0, 0.0], [4.0, 0.0], [9.0, 1.0], [9.0, 5.0]];
+    /// let mut contexts = ShapeContexts::with_binning(Binning::Bilinear);
+    /// let first = &contexts.compute(&points, Orientation::ImageAxes)?.values()[..60];
+    /// assert!(first.iter().filter(|&&height| height > 0.0).count() > 3);
+    /// # Ok::<(), phalanx_shape_context::Error>(())
+    /// ```
+    pub fn with_binning(binning: Binning) -> Self {
         Self {
+            binning,
             points: Columns::default(),
             axes: Axes::Shared([1.0, 0.0]),
             slots: Vec::new(),
             counts: Vec::new(),
+            weights: Vec::new(),
             histograms: Vec::new(),
         }
     }
@@ -53,9 +83,18 @@ impl ShapeContexts {
         self.points.load(points)?;
         let mean_distance = self.points.mean_distance()?;
         self.axes.find(points, orientation, mean_distance)?;
-        pairs::count(&self.points, mean_distance, &self.axes, &mut self.slots, &mut self.counts);
-        normalise(&self.counts, &mut self.histograms)
-            .map_err(|point| Error::Isolated { point, mean_distance })?;
+        let Self { points, axes, slots, counts, weights, histograms, .. } = self;
+        let normalised = match self.binning {
+            Binning::Nearest => {
+                pairs::count(points, mean_distance, axes, slots, counts);
+                normalise(counts, histograms)
+            }
+            Binning::Bilinear => {
+                bilinear::share(points, mean_distance, axes, weights);
+                normalise_shares(weights, histograms)
+            }
+        };
+        normalised.map_err(|point| Error::Isolated { point, mean_distance })?;
         Ok(Descriptors { histograms: &self.histograms, mean_distance, axes: &self.axes })
     }
 }
@@ -73,6 +112,22 @@ fn normalise(counts: &[[u32; SLOTS]], out: &mut Vec<f32>) -> std::result::Result
     }
     Ok(())
 }
+
+/// The same for shares of votes.
+fn normalise_shares(weights: &[[f64; BINS]], out: &mut Vec<f32>) -> std::result::Result<(), usize> {
+    out.clear();
+    for (point, row) in weights.iter().enumerate() {
+        let seen: f64 = row.iter().sum();
+        if seen <= LEAST_SEEN {
+            return Err(point);
+        }
+        out.extend(row.iter().map(|&share| (share / seen) as f32));
+    }
+    Ok(())
+}
+
+/// A point at the very edge of sight has a share of a vote that is nothing but rounding.
+const LEAST_SEEN: f64 = 1e-9;
 
 /// The shape contexts of one contour.
 #[derive(Debug, Clone, Copy)]

@@ -1,0 +1,122 @@
+//! What is done with any bytes at all, for each thing that is read from files: to be refused by name
+//! or to be sound, but never to crash or to hang.
+
+use glam::DAffine3;
+use image::GrayImage;
+use phalanx::{Error, Estimator, Part};
+use phalanx_camera::{Rig, cameras_from_opencv_json};
+use phalanx_codebook::{AnyCoding, Coding, Scratch};
+use phalanx_hand::{HandShape, Pose, PoseTable};
+use phalanx_segmentation::{Cleanup, Silhouette, SkinModel, WristModel, clean};
+
+/// A target's name, which is also its corpus's, and what it does.
+pub(crate) type Target = (&'static str, fn(&[u8]));
+
+/// All of them.
+#[allow(dead_code, reason = "each fuzz target uses one of them")]
+pub(crate) const TARGETS: [Target; 10] = [
+    ("model", model),
+    ("part", part),
+    ("rig", rig),
+    ("calibration", calibration),
+    ("hand", hand),
+    ("poses", poses),
+    ("skin_model", skin_model),
+    ("wrist_model", wrist_model),
+    ("coding", coding),
+    ("mask", mask),
+];
+
+/// A model's payload, under a header that vouches for it, and as a whole file.
+pub(crate) fn model(data: &[u8]) {
+    let _ = Estimator::from_bytes(data);
+    if let Ok(estimator) =
+        Estimator::from_bytes(&sealed(*b"PHALANX\0", Estimator::from_bytes, data))
+    {
+        let bytes = estimator.to_bytes().expect("what was read can be written");
+        assert_eq!(Estimator::from_bytes(&bytes).expect("and read again"), estimator);
+    }
+}
+
+/// The same of a part of a training.
+pub(crate) fn part(data: &[u8]) {
+    let _ = Part::from_bytes(data);
+    if let Ok(part) = Part::from_bytes(&sealed(*b"PHXPART\0", Part::from_bytes, data)) {
+        part.to_bytes().expect("what was read can be written");
+    }
+}
+
+/// A payload under a header of the format that is read at present.
+fn sealed<T>(mark: [u8; 8], read: fn(&[u8]) -> phalanx::Result<T>, payload: &[u8]) -> Vec<u8> {
+    let newest = [&mark[..], &[0xff; 4]].concat();
+    let Err(Error::FileVersion { known, .. }) = read(&newest) else {
+        panic!("a file of the last format there can be is not refused for it");
+    };
+    let length = (payload.len() as u64).to_le_bytes();
+    let checksum = crc32fast::hash(payload).to_le_bytes();
+    [&mark[..], &known.to_le_bytes(), &length, &checksum, payload].concat()
+}
+
+pub(crate) fn rig(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    if let Ok(rig) = Rig::from_toml(text) {
+        let text = rig.to_toml().expect("what was read can be written");
+        let again = Rig::from_toml(&text).expect("and read again");
+        assert_eq!(again.cameras.len(), rig.cameras.len());
+    }
+}
+
+pub(crate) fn calibration(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    let _ = cameras_from_opencv_json(text, 25.0);
+}
+
+pub(crate) fn hand(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    if let Ok(shape) = HandShape::from_toml(text) {
+        shape.pose(&Pose::REST, &DAffine3::IDENTITY);
+        HandShape::from_toml(&shape.to_toml()).expect("what was read can be read again");
+    }
+}
+
+pub(crate) fn poses(data: &[u8]) {
+    if let Ok(table) = PoseTable::read(data) {
+        assert!(table.poses.iter().all(|pose| pose.0.iter().all(|number| number.is_finite())));
+    }
+}
+
+pub(crate) fn skin_model(data: &[u8]) {
+    if let Ok(model) = SkinModel::from_bytes(data) {
+        assert_eq!(SkinModel::from_bytes(&model.to_bytes()).expect("read again"), model);
+    }
+}
+
+pub(crate) fn wrist_model(data: &[u8]) {
+    if let Ok(model) = WristModel::from_bytes(data) {
+        model.to_bytes();
+    }
+}
+
+/// A coding, and then a code.
+pub(crate) fn coding(data: &[u8]) {
+    let Ok(coding) = postcard::from_bytes::<AnyCoding>(data) else { return };
+    let bins = coding.bins();
+    let sample = vec![1.0 / bins as f32; bins];
+    let mut code = vec![0.0; coding.dim()];
+    if coding.encode(&sample, &mut Scratch::default(), &mut code).is_ok() {
+        assert!(code.iter().all(|number| number.is_finite()));
+    }
+}
+
+/// A width and the pixels of a mask, which is cleaned and traced.
+pub(crate) fn mask(data: &[u8]) {
+    let Some((&width, pixels)) = data.split_first() else { return };
+    let width = usize::from(width).max(1);
+    let height = pixels.len() / width;
+    let pixels = pixels[..width * height].to_vec();
+    let Some(mask) = GrayImage::from_raw(width as u32, height as u32, pixels) else { return };
+    let _ = Silhouette::from_mask(&mask);
+    if let Ok(cleaned) = clean(&mask, &Cleanup::default()) {
+        let _ = Silhouette::from_mask(&cleaned);
+    }
+}
