@@ -20,7 +20,7 @@ const PAGE: &str = "docs/ablation.md";
 const PRESET: Preset = Preset::Balanced;
 const TESTS: [Test; 2] = [Test::Unseen, Test::All];
 /// Of so many samples of a test one is looked at; shares no factor with the hands in `all`.
-const EVERY: usize = 9;
+const EVERY: usize = 17;
 /// Scenes from which it is learnt how estimates err.
 const ERROR_SCENES: usize = 4000;
 /// Scenes that are learnt from where there are few.
