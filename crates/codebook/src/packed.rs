@@ -124,11 +124,16 @@ impl Tile<'_> {
     }
 }
 
-/// What a metric adds up for all vectors of some blocks. A trait and no closure, which would not be
+/// The distances from all vectors of some blocks, given their offsets. A trait and no closure, which would not be
 /// compiled for the caller's instruction set.
 trait Sums {
     /// `N` blocks at once, so that additions to one need not wait for the last.
-    fn of_blocks<const N: usize>(blocks: &[Lanes], dim: usize, to: &Support) -> [Lanes; N];
+    fn of_blocks<const N: usize>(
+        blocks: &[Lanes],
+        offsets: &[Lanes; N],
+        dim: usize,
+        to: &Support,
+    ) -> [Lanes; N];
 }
 
 struct ChiSquared;
@@ -138,12 +143,17 @@ impl Sums for ChiSquared {
     /// ½ Σc − 3/2 Σh + 2 Σ h² / (h + c), whose last sum needs the filled bins of h only, and whose
     /// first is the offset of c.
     #[inline(always)]
-    fn of_blocks<const N: usize>(blocks: &[Lanes], dim: usize, to: &Support) -> [Lanes; N] {
+    fn of_blocks<const N: usize>(
+        blocks: &[Lanes],
+        offsets: &[Lanes; N],
+        dim: usize,
+        to: &Support,
+    ) -> [Lanes; N] {
         let mut sums = [[0.0; LANES]; N];
-        for (sums, block) in sums.iter_mut().zip(blocks.chunks_exact(dim)) {
+        for ((sums, offsets), block) in sums.iter_mut().zip(offsets).zip(blocks.chunks_exact(dim)) {
             *sums = overlap(block, &to.pairs);
-            for sum in sums {
-                *sum = -1.5 * to.mass + 2.0 * *sum;
+            for (sum, offset) in sums.iter_mut().zip(offsets) {
+                *sum = offset + -1.5 * to.mass + 2.0 * *sum;
             }
         }
         sums
@@ -156,7 +166,12 @@ impl Sums for Euclidean {
     /// Σ (h − c)² is Σ c² + Σ h² − 2 Σ h c, whose last sum needs the h only that are not zero, and
     /// whose first is the offset of c.
     #[inline(always)]
-    fn of_blocks<const N: usize>(blocks: &[Lanes], dim: usize, to: &Support) -> [Lanes; N] {
+    fn of_blocks<const N: usize>(
+        blocks: &[Lanes],
+        offsets: &[Lanes; N],
+        dim: usize,
+        to: &Support,
+    ) -> [Lanes; N] {
         let mut sums = [[to.mass; LANES]; N];
         let blocks: [&[Lanes]; N] = std::array::from_fn(|block| &blocks[block * dim..][..dim]);
         for &Bin { index, height } in to.terms() {
@@ -164,6 +179,11 @@ impl Sums for Euclidean {
                 for (sum, value) in sums.iter_mut().zip(&block[index]) {
                     *sum -= height * value;
                 }
+            }
+        }
+        for (sums, offsets) in sums.iter_mut().zip(offsets) {
+            for (sum, offset) in sums.iter_mut().zip(offsets) {
+                *sum += offset;
             }
         }
         sums
@@ -215,27 +235,26 @@ impl<S: Sums> NullaryFnOnce for Compare<'_, S> {
         for ((blocks, offsets), distances) in
             blocks.chunks_exact(TOGETHER * dim).zip(offsets).zip(distances)
         {
-            *distances = S::of_blocks(blocks, dim, self.to);
-            finish(distances, offsets, &mut smallest);
+            *distances = S::of_blocks(blocks, offsets, dim, self.to);
+            finish(distances, &mut smallest);
         }
         let last = last_blocks.chunks_exact(dim).zip(last_offsets).zip(last_distances);
         for ((block, offsets), distances) in last {
-            let mut one: [Lanes; 1] = S::of_blocks(block, dim, self.to);
-            finish(&mut one, &[*offsets], &mut smallest);
+            let mut one: [Lanes; 1] = S::of_blocks(block, &[*offsets], dim, self.to);
+            finish(&mut one, &mut smallest);
             [*distances] = one;
         }
         smallest.into_iter().fold(f32::INFINITY, f32::min)
     }
 }
 
-/// Adds the offsets to sums, and lowers the smallest of each lane.
+/// Takes away what rounding made negative, and lowers the smallest of each lane.
 #[inline(always)]
-fn finish<const N: usize>(sums: &mut [Lanes; N], offsets: &[Lanes; N], smallest: &mut Lanes) {
-    for (sums, offsets) in sums.iter_mut().zip(offsets) {
-        for ((sum, offset), least) in sums.iter_mut().zip(offsets).zip(&mut *smallest) {
-            // Rounding can make it negative.
-            *sum = (*sum + offset).max(0.0);
-            *least = if *sum < *least { *sum } else { *least };
+fn finish<const N: usize>(distances: &mut [Lanes; N], smallest: &mut Lanes) {
+    for distances in distances {
+        for (distance, least) in distances.iter_mut().zip(&mut *smallest) {
+            *distance = distance.max(0.0);
+            *least = if *distance < *least { *distance } else { *least };
         }
     }
 }

@@ -4,12 +4,13 @@
 use glam::{DVec2, DVec3};
 use image::{GrayImage, Luma};
 use phalanx::{
-    Framing, OrientationRule, Picture, Scene, SceneDescriber, Sight, Training, Window,
+    Framing, OrientationRule, Picture, Refiner, Scene, SceneDescriber, Sight, Training, Window,
     WindowFinder, Workspace, initial_global,
 };
 use phalanx_camera::{Camera, Distortion, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_multiview::Vocabulary;
+use phalanx_refine::Refinement;
 use phalanx_render::Renderer;
 use phalanx_segmentation::{LocatedHand, Silhouette};
 use proptest::prelude::*;
@@ -132,6 +133,31 @@ fn training_and_use_see_the_same() {
         }
     }
     assert!(worst < 20.0, "{worst}");
+}
+
+/// Hands elsewhere, their arms leaning, as an estimator sees them that learnt from hands in the middle.
+#[test]
+fn hands_are_placed_and_refined_where_they_are() {
+    let (rig, hand) = (rig(), HandShape::adult());
+    let estimator = training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::Silent).unwrap();
+    let refiner = Refiner::for_estimator(&estimator, Refinement::default()).unwrap();
+    let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
+    let mut workspace = Workspace::default();
+    for (k, mut pose) in unseen().into_iter().enumerate() {
+        for (j, dof) in [Dof::TX, Dof::TY, Dof::TZ].into_iter().enumerate() {
+            pose[dof] = [-25.0, 0.0, 25.0][(k + j) % 3];
+        }
+        pose[Dof::ThetaX] = [-0.2, 0.0, 0.2][k % 3];
+        let masks = describer.masks(&Scene::nominal(&rig, &hand, pose)).unwrap().to_vec();
+        let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
+        let estimate = estimator.estimate(&pictures, &mut workspace).unwrap();
+        let off = |pose: &Pose, truth: &Pose| pose.translation().distance(truth.translation());
+        assert!(off(&estimate.pose, &pose) < 40.0, "{} mm", off(&estimate.pose, &pose));
+        let evidence = refiner.evidence_of(&workspace).unwrap();
+        let refined = refiner.refine(&evidence, &estimate).unwrap();
+        assert!(off(&refined.pose, &pose) < 5.0, "{} mm", off(&refined.pose, &pose));
+        assert!(refined.overlaps.iter().all(|&overlap| overlap > 0.9), "{:?}", refined.overlaps);
+    }
 }
 
 #[test]
