@@ -22,3 +22,8 @@ pub(crate) fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
 }
+
+/// The middle of what is measured of several runs; NaN of none.
+pub(crate) fn middle<T>(runs: &[T], of: fn(&T) -> f64) -> f64 {
+    median(runs.iter().map(of)).unwrap_or(f64::NAN)
+}

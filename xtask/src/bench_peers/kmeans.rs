@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use phalanx_codebook::{KMeans, Metric, chi_squared};
 
-use super::clock::{median, timed};
+use super::clock::{middle, timed};
 use super::peers::{Peers, field};
 use super::row::{Figure, Row, Target};
 
@@ -68,10 +68,6 @@ pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
         }
     }
     Ok(rows)
-}
-
-fn middle(outcomes: &[Outcome], of: fn(&Outcome) -> f64) -> f64 {
-    median(outcomes.iter().map(of)).unwrap_or(f64::NAN)
 }
 
 /// The samples that bench_kmeans.py makes for itself.

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use phalanx_rvm::{Kernel, Tipping, Width};
 
-use super::clock::{median, timed};
+use super::clock::{middle, timed};
 use super::data::Problem;
 use super::peers::{Conversation, Peers};
 use super::row::{Figure, Row, Target};
@@ -81,8 +81,8 @@ fn compare(
         figure,
         unit,
         peer: "fastrvm",
-        theirs: theirs.as_ref().map(|all| median(all.iter().map(of)).unwrap_or(f64::NAN)).into(),
-        ours: median(ours.iter().map(of)).map_or(Figure::None, Figure::Value),
+        theirs: theirs.as_ref().map(|all| middle(all, of)).into(),
+        ours: Figure::Value(middle(&ours, of)),
         target,
     };
     let time = if name == TIMED { Target::AtMostTheirs(1.0 / 3.0) } else { Target::Open };

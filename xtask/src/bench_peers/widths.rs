@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Result, anyhow};
 use phalanx_rvm::LearntWidths;
 
-use super::clock::{median, timed};
+use super::clock::{middle, timed};
 use super::data::Problem;
 use super::peers::{Peers, field};
 use super::row::{Figure, Row, Target};
@@ -59,10 +59,6 @@ pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
         ]
     });
     Ok(rows.collect())
-}
-
-fn middle(outcomes: &[Outcome], of: fn(&Outcome) -> f64) -> f64 {
-    median(outcomes.iter().map(of)).unwrap_or(f64::NAN)
 }
 
 /// What bench_rvm.py printed of a problem.
