@@ -1,11 +1,13 @@
 //! 837 histograms to 24 angles: many outputs at once.
 
 use anyhow::Result;
+use phalanx_rvm::faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Bridges, Columns, Fit, Kernel, LearntWidths, MultivariateRvm, Pilot, Stop, Sums, Tie, Width,
+    Block, Bridges, Columns, ForwardSelection, GradientMetric, Kernel, Model, MultivariateRvm,
+    Nystrom, Pilot, Projection, Stop, Sums, Width,
 };
 
-use super::clock::{median, timed};
+use super::clock::{middle, timed};
 use super::data::Problem;
 use super::peers::{Peers, field};
 use super::row::{Figure, Row, Target};
@@ -13,11 +15,17 @@ use super::row::{Figure, Row, Target};
 /// How many vectors all outputs may share.
 const MOST: usize = 150;
 
-/// The inputs of one camera, which share a width where widths are learnt.
-const OF_CAMERA: usize = 30;
+/// The penalty of forward selection.
+const LAMBDA: f64 = 1e-4;
 
 /// To how many columns Agarwal and Triggs' regression goes down.
 const COUNT: usize = 40;
+
+/// A fit, and what it reads in place of the inputs where a distance was learnt first.
+struct Made {
+    projection: Option<Projection>,
+    model: Model,
+}
 
 /// What is measured of our fits.
 struct Outcome {
@@ -37,54 +45,62 @@ pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
     let theirs = |peer| peers.script("bench_rvm.py", &[&data, peer, "--hand"]);
     let (fastrvm, ridge) = (theirs("fastrvm"), theirs("krr"));
     eprintln!("hand: ours");
-    let (x, y) = (problem.x.as_ref(), problem.y.as_ref());
     let width = width(&problem);
-    let shared = MultivariateRvm {
-        kernel: Kernel::Gaussian(width),
-        most: Some(MOST),
-        ..MultivariateRvm::default()
-    };
-    let ours = measure(&problem, || fit_in_proportion(&problem, &shared, width))?;
-    let learning = LearntWidths {
-        rvm: MultivariateRvm { most: Some(MOST), ..MultivariateRvm::default() },
-        tie: Tie::Blocks(vec![OF_CAMERA; x.nrows() / OF_CAMERA]),
-        ..LearntWidths::default()
-    };
-    let learnt = measure(&problem, || learning.fit(x, y))?;
-    let row = |figure, unit, peer, theirs: Figure, ours, target| Row {
-        work: "hand, 837 × 90 → 24: shared vectors".to_owned(),
-        figure,
-        unit,
-        peer,
-        theirs,
-        ours: Figure::Value(ours),
-        target,
-    };
+    let rvm = MultivariateRvm { kernel: Kernel::Gaussian(width), ..MultivariateRvm::default() };
+    let shared =
+        measure(&problem, || as_given(&problem, width, |c, s| Ok(rvm.fit_sums(c, s)?.model)))?;
+    let few = measure(&problem, || as_given(&problem, width, |c, s| forward(c, s, width)))?;
+    let wide = Width::Scatter(3.0);
+    let learnt = measure(&problem, || by_distance(&problem, wide, |c, s| forward(c, s, wide)))?;
+    let wider = Width::Scatter(4.0);
+    let dense = Nystrom { width: wider, ..Nystrom::default() };
+    let all =
+        measure(&problem, || by_distance(&problem, wider, |c, s| Ok(dense.fit_sums(c, s)?.model)))?;
+    let few_vectors = Target::AtMost(MOST as f64);
     let each = "fastrvm × 24";
-    let mut rows = vec![
-        row("time", "s", each, read(&fastrvm, "fit_total_s"), ours.seconds, Target::AtMost(5.0)),
-        row("vectors", "", each, read(&fastrvm, "nvec_mean"), ours.vectors, Target::AtMost(150.0)),
-        row("mean error", "°", each, read(&fastrvm, "MAE_deg"), ours.error, Target::AtMost(0.80)),
-        row("mean error", "°", "kernel ridge", read(&ridge, "MAE_deg"), ours.error, Target::Open),
-    ];
-    let row = |figure, unit, ours, target| Row {
-        work: "hand: shared vectors, learnt widths".to_owned(),
-        figure,
-        unit,
-        peer: "",
-        theirs: Figure::None,
-        ours: Figure::Value(ours),
-        target,
-    };
-    rows.extend([
-        row("time", "s", learnt.seconds, Target::Open),
-        row("vectors", "", learnt.vectors, Target::AtMost(150.0)),
-        row("mean error", "°", learnt.error, Target::AtMost(0.70)),
-    ]);
+    let peers = [("fit_total_s", each), ("nvec_mean", each), ("MAE_deg", each)];
+    let mut rows = Vec::new();
+    for (name, ours, targets) in [
+        ("multivariate RVM", &shared, [Target::AtMost(5.0), few_vectors, Target::AtMost(0.80)]),
+        ("forward selection", &few, [Target::AtMost(5.0), few_vectors, Target::AtMost(0.80)]),
+        (
+            "learnt distance, forward selection",
+            &learnt,
+            [Target::AtMost(5.0), few_vectors, Target::AtMost(0.70)],
+        ),
+        (
+            "learnt distance, all samples",
+            &all,
+            [Target::AtMost(5.0), Target::Open, Target::AtMost(0.70)],
+        ),
+    ] {
+        let figures = [
+            ("time", "s", ours.seconds),
+            ("vectors", "", ours.vectors),
+            ("mean error", "°", ours.error),
+        ];
+        for (((figure, unit, ours), target), (key, peer)) in
+            figures.into_iter().zip(targets).zip(peers)
+        {
+            let (work, theirs) = (format!("hand, 837 × 90 → 24: {name}"), read(&fastrvm, key));
+            rows.push(Row { work, figure, unit, peer, theirs, ours: Figure::Value(ours), target });
+        }
+    }
+    rows.push(Row {
+        work: "hand, 837 × 90 → 24: learnt distance, all samples".to_owned(),
+        figure: "mean error",
+        unit: "°",
+        peer: "kernel ridge",
+        theirs: read(&ridge, "MAE_deg"),
+        ours: Figure::Value(all.error),
+        target: Target::Open,
+    });
+    let (x, y) = (problem.x.as_ref(), problem.y.as_ref());
     let gaussian = Kernel::Gaussian(Width::Scatter(0.3));
     for (name, kernel) in [("linear", Kernel::Linear), ("Gaussian", gaussian)] {
         let bridges = Bridges { kernel, stop: Stop::Count(COUNT), ..Bridges::default() };
-        let ours = measure(&problem, || bridges.fit(x, y))?;
+        let fit = || Ok(Made { projection: None, model: bridges.fit(x, y)?.model });
+        let ours = measure(&problem, fit)?;
         let row = |figure, unit, ours, target| Row {
             work: format!("Agarwal–Triggs on it to {COUNT}, {name}"),
             figure,
@@ -101,7 +117,7 @@ pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
 }
 
 /// What the peers' γ, 1 / (inputs × variance of all numbers), is where inputs are scaled alike to a
-/// mean variance of 1, as [`fit_in_proportion`] does.
+/// mean variance of 1, as [`as_given`] does.
 fn width(problem: &Problem) -> Width {
     let x = &problem.x;
     let count = (x.nrows() * x.ncols()) as f64;
@@ -111,17 +127,49 @@ fn width(problem: &Problem) -> Width {
 }
 
 /// A fit to inputs that keep their proportions, as the peers'.
-fn fit_in_proportion(
+fn as_given(
     problem: &Problem,
-    rvm: &MultivariateRvm,
     width: Width,
-) -> phalanx_rvm::Result<Fit> {
+    fit: impl Fn(&Columns, &Sums) -> phalanx_rvm::Result<Model>,
+) -> phalanx_rvm::Result<Made> {
+    Ok(Made { projection: None, model: in_proportion(problem.x.as_ref(), problem, width, fit)? })
+}
+
+/// A fit to inputs in which a distance was learnt.
+fn by_distance(
+    problem: &Problem,
+    width: Width,
+    fit: impl Fn(&Columns, &Sums) -> phalanx_rvm::Result<Model>,
+) -> phalanx_rvm::Result<Made> {
     let (x, y) = (problem.x.as_ref(), problem.y.as_ref());
+    let regression = Nystrom { width: Width::Scatter(1.7), ..Nystrom::default() };
+    let learning = GradientMetric { regression, rounds: 1, centres: 400, gradients: 400, rank: 40 };
+    let block = Block { inputs: x.nrows(), components: 60 };
+    let all = vec![(0..y.nrows()).collect()];
+    let projection = learning.learn(x, y, &[block], &all)?.projection;
+    let inputs: Mat<f64> = projection.apply(x)?;
+    let model = in_proportion(inputs.as_ref(), problem, width, fit)?;
+    Ok(Made { projection: Some(projection), model })
+}
+
+fn in_proportion(
+    x: MatRef<'_, f64>,
+    problem: &Problem,
+    width: Width,
+    fit: impl Fn(&Columns, &Sums) -> phalanx_rvm::Result<Model>,
+) -> phalanx_rvm::Result<Model> {
+    let y = problem.y.as_ref();
     let samples: Vec<usize> = (0..x.ncols()).collect();
     let columns = Columns::in_proportion(&Pilot { x, y, samples: &samples }, width)?;
     let mut sums = Sums::new(&columns);
     sums.add(&columns, x, y)?;
-    rvm.fit_sums(&columns, &sums)
+    fit(&columns, &sums)
+}
+
+fn forward(columns: &Columns, sums: &Sums, width: Width) -> phalanx_rvm::Result<Model> {
+    let chosen = ForwardSelection { count: MOST, lambda: LAMBDA, ..ForwardSelection::default() };
+    let chosen = ForwardSelection { kernel: Kernel::Gaussian(width), ..chosen };
+    Ok(chosen.fit_sums(columns, sums)?.model)
 }
 
 /// A figure that a script printed in its last line.
@@ -132,13 +180,18 @@ fn read(printed: &Result<String>, key: &str) -> Figure {
     }
 }
 
-fn measure(problem: &Problem, fit: impl Fn() -> phalanx_rvm::Result<Fit>) -> Result<Outcome> {
+fn measure(problem: &Problem, fit: impl Fn() -> phalanx_rvm::Result<Made>) -> Result<Outcome> {
     let fits = (0..3).map(|_| timed(&fit)).collect::<Result<Vec<_>, _>>()?;
-    let seconds = median(fits.iter().map(|(seconds, _)| *seconds)).unwrap_or(f64::NAN);
-    let model = &fits[0].1.model;
+    let seconds = middle(&fits, |(seconds, _)| *seconds);
+    let Made { projection, model } = &fits[0].1;
+    let test = problem.test_x.as_ref();
+    let prediction = match projection {
+        Some(projection) => model.predict(projection.apply(test)?.as_ref())?,
+        None => model.predict(test)?,
+    };
     Ok(Outcome {
         seconds,
         vectors: model.kept_samples().len() as f64,
-        error: problem.mean_error(model.predict(problem.test_x.as_ref())?.as_ref()),
+        error: problem.mean_error(prediction.as_ref()),
     })
 }
