@@ -116,7 +116,14 @@ pub(crate) fn placed<'a>(rig: &'a Rig, hand: &'a HandShape, samples: usize) -> S
     Set { name: "placed", poses, ..random(rig, hand, 1, Augment::Yes) }
 }
 
-/// The same with wrists that bend, as those of people who are not told to keep them straight.
+/// Hands like those of [`placed`], none of which it holds, as [`fresh`] ones are like [`random`].
+pub(crate) fn fresh_placed<'a>(rig: &'a Rig, hand: &'a HandShape, samples: usize) -> Set<'a> {
+    let size = rig.volume.size;
+    let poses = independent(samples, ERROR_POSES, |random| placed_pose(random, size));
+    Set { name: "placed", poses, ..fresh(rig, hand, 1, Augment::Yes) }
+}
+
+/// Hands as of [`placed`] with wrists that bend, as those of people who are not told to keep them straight.
 pub(crate) fn loosely_placed<'a>(rig: &'a Rig, hand: &'a HandShape, samples: usize) -> Set<'a> {
     let size = rig.volume.size;
     let bent = |random: &mut ItemRandom| {

@@ -20,6 +20,9 @@ pub struct GlobalStart {
     pub miss: f64,
 }
 
+/// What a hand's place in its windows tells.
+pub(crate) const PLACED: [Dof; 5] = [Dof::ThetaX, Dof::ThetaY, Dof::TX, Dof::TY, Dof::TZ];
+
 /// How far off a hand so placed usually is, as `cargo xtask eval-global` finds it: the arm's direction
 /// in each of θ_X and θ_Y, radians, and the wrist along each axis, mm.
 const LEAN_STD: f64 = 0.105;

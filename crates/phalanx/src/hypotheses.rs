@@ -6,8 +6,10 @@ use phalanx_refine::{Evidence, Refined};
 use phalanx_rvm::ConditionalDensity;
 use rayon::prelude::*;
 
+use crate::global_pose::PLACED;
 use crate::{
-    Error, Estimate, Estimator, Progress, Refiner, Result, Scenes, describe_scenes, targets,
+    Error, Estimate, Estimator, Framing, Progress, Refiner, Result, Scenes, describe_scenes,
+    targets,
 };
 
 /// Scenes with estimates near to one that say how such an estimate errs.
@@ -61,8 +63,10 @@ impl Estimator {
             self.regression().predict_into(x, &mut scratch, &mut pose.0, &mut std)?;
             Ok(pose)
         };
-        let estimates: Vec<Pose> = descriptors.par_iter().map(predict).collect::<Result<_>>()?;
-        let truth: Vec<Pose> = numbers.iter().map(|&number| scenes.scene(number).pose).collect();
+        let estimates = descriptors.par_iter().map(predict).collect::<Result<Vec<_>>>()?;
+        let estimates: Vec<Pose> = estimates.iter().map(|pose| self.unplaced(pose)).collect();
+        let truth = numbers.iter().map(|&number| self.unplaced(&scenes.scene(number).pose));
+        let truth: Vec<Pose> = truth.collect();
         let (estimates, truth): (Mat<f64>, Mat<f64>) = (targets(&estimates), targets(&truth));
         let neighbours = NEIGHBOURS.min(numbers.len());
         let units = Dof::ALL.map(|dof| match dof.unit() {
@@ -81,8 +85,31 @@ impl Estimator {
     /// hypotheses asked for.
     pub fn hypotheses(&self, estimate: &Estimate, most: usize) -> Result<Vec<Hypothesis>> {
         let errors = self.errors().ok_or(Error::NoErrors)?;
-        let found = errors.hypotheses(&estimate.pose.0, most)?;
-        Ok(found.iter().map(hypothesis).collect())
+        let found = errors.hypotheses(&self.unplaced(&estimate.pose).0, most)?;
+        let placed = |found| {
+            let mut hypothesis = hypothesis(found);
+            for &dof in self.placed() {
+                hypothesis.pose[dof] = estimate.pose[dof];
+                hypothesis.std[dof.index()] = estimate.std[dof.index()];
+            }
+            hypothesis
+        };
+        Ok(found.iter().map(placed).collect())
+    }
+
+    /// The numbers that windows tell where they are looked through, and regression does not.
+    fn placed(&self) -> &'static [Dof] {
+        match self.descriptor().sight().framing {
+            Framing::Picture => &[],
+            Framing::Window => &PLACED,
+        }
+    }
+
+    /// A pose without what windows tell.
+    fn unplaced(&self, pose: &Pose) -> Pose {
+        let mut pose = *pose;
+        self.placed().iter().for_each(|&dof| pose[dof] = Pose::REST[dof]);
+        pose
     }
 }
 

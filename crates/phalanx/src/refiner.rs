@@ -8,6 +8,7 @@ use phalanx_refine::{
 };
 use phalanx_segmentation::Silhouette;
 
+use crate::global_pose::PLACED;
 use crate::{
     Error, Estimate, Estimator, Hypothesis, ItemRandom, Result, Workspace, working_camera,
 };
@@ -183,6 +184,12 @@ impl Refiner {
             if hypotheses.is_empty() || refined.border_px <= APART {
                 return Ok(vec![refined]);
             }
+            // Palm and arm tell where the hand is, whatever the fingers do.
+            let mut placed = hypotheses.to_vec();
+            for hypothesis in &mut placed {
+                PLACED.iter().for_each(|&dof| hypothesis.pose[dof] = refined.pose[dof]);
+            }
+            return self.refine_hypotheses(evidence, estimate, &placed);
         }
         self.refine_hypotheses(evidence, estimate, hypotheses)
     }

@@ -4,13 +4,13 @@
 use glam::{DVec2, DVec3};
 use image::{GrayImage, Luma};
 use phalanx::{
-    Framing, OrientationRule, Picture, Refiner, Scene, SceneDescriber, Sight, Training, Window,
-    WindowFinder, Workspace, initial_global,
+    Framing, NominalScenes, OrientationRule, Picture, Refiner, Scene, SceneDescriber, Sight,
+    Training, Window, WindowFinder, Workspace, initial_global,
 };
 use phalanx_camera::{Camera, Distortion, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_multiview::Vocabulary;
-use phalanx_refine::Refinement;
+use phalanx_refine::{PosePrior, Refinement};
 use phalanx_render::Renderer;
 use phalanx_segmentation::{LocatedHand, Silhouette};
 use proptest::prelude::*;
@@ -157,6 +157,52 @@ fn hands_are_placed_and_refined_where_they_are() {
         let refined = refiner.refine(&evidence, &estimate).unwrap();
         assert!(off(&refined.pose, &pose) < 5.0, "{} mm", off(&refined.pose, &pose));
         assert!(refined.overlaps.iter().all(|&overlap| overlap > 0.9), "{:?}", refined.overlaps);
+    }
+}
+
+/// A hand whose fingers reach beyond the picture is not taken for one that ends there.
+#[test]
+fn what_is_beyond_the_picture_is_not_known() {
+    let (rig, hand) = (rig(), HandShape::adult());
+    let (camera, rest) = (&rig.cameras[1], rig.volume.rest_frame());
+    // So far along the arm that the picture ends across the fingers' last joints.
+    let mut pose = Pose::REST;
+    pose[Dof::TZ] = 75.0;
+    let seen = mask(camera, &pose);
+    assert!((0..seen.height()).any(|y| seen.get_pixel(seen.width() - 1, y) == &Luma([255])));
+    let (window, silhouette) = look(camera, &seen);
+    let evidence = [window.evidence(&silhouette).unwrap()];
+    let prior = PosePrior::independent(pose, &[0.3; Dof::COUNT]).unwrap();
+    let refined = Refinement::default().run(&hand, &rest, &evidence, &pose, &prior).unwrap();
+    let bent: f64 = Digit::FINGERS
+        .into_iter()
+        .flat_map(|digit| digit.dofs()[1..].to_vec())
+        .map(|dof| refined.pose[dof].to_degrees())
+        .sum();
+    assert!(bent.abs() < 60.0, "the fingers bend by {bent} degrees together");
+}
+
+/// Errors are learnt of what regression tells; where the hand is, its windows say.
+#[test]
+fn hypotheses_are_where_the_windows_show_the_hand() {
+    let (rig, hand) = (rig(), HandShape::adult());
+    let estimator = training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::Silent).unwrap();
+    let poses = poses();
+    let scenes = NominalScenes { rig: &rig, hand: &hand, poses: &poses };
+    let estimator = estimator.learn_errors(&scenes, &phalanx::Silent).unwrap();
+    let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
+    let mut pose = closing(0.4, 20.0);
+    pose[Dof::TY] = 20.0;
+    let masks = describer.masks(&Scene::nominal(&rig, &hand, pose)).unwrap().to_vec();
+    let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
+    let estimate = estimator.estimate(&pictures, &mut Workspace::default()).unwrap();
+    let hypotheses = estimator.hypotheses(&estimate, 3).unwrap();
+    assert!(hypotheses.len() > 1);
+    for hypothesis in hypotheses {
+        for dof in [Dof::ThetaX, Dof::ThetaY, Dof::TX, Dof::TY, Dof::TZ] {
+            assert_eq!(hypothesis.pose[dof], estimate.pose[dof], "{dof}");
+            assert_eq!(hypothesis.std[dof.index()], estimate.std[dof.index()], "{dof}");
+        }
     }
 }
 

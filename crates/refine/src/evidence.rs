@@ -1,7 +1,7 @@
 //! What a camera saw.
 
 use glam::{DVec2, DVec3};
-use image::GrayImage;
+use image::{GrayImage, Luma};
 use phalanx_camera::Camera;
 
 use crate::{Error, Result};
@@ -15,6 +15,10 @@ use crate::{Error, Result};
 pub struct Evidence {
     camera: Camera,
     mask: GrayImage,
+    /// 255 where it is known whether there is hand, 0 elsewhere.
+    known: GrayImage,
+    /// How far off its place the border is, over what it is where pixels were seen at once.
+    grain: f64,
     /// Unit directions of the cracks in the camera's frame.
     rays: Vec<DVec3>,
     /// Their places, px.
@@ -34,15 +38,16 @@ impl Evidence {
         Self::within(camera, mask, |_| true)
     }
 
-    /// The same, where only such border counts that lies at pixel positions for which `counts`:
-    /// elsewhere nothing is known, such as where a sleeve covers the arm.
+    /// The same, where it is `known` only of some pixels, by their middles, whether they are hand:
+    /// not where a sleeve covers the arm, or beyond the border of the picture that a window looks
+    /// into.
     ///
     /// # Errors
-    /// As of [`new`](Self::new).
+    /// As of [`new`](Self::new), the border of what is not known being none.
     pub fn within(
         camera: &Camera,
         mask: &GrayImage,
-        counts: impl Fn(DVec2) -> bool,
+        known: impl Fn(DVec2) -> bool,
     ) -> Result<Self> {
         camera.validate()?;
         let name = || camera.name.clone();
@@ -50,9 +55,13 @@ impl Evidence {
         if mask.dimensions() != expected {
             return Err(Error::MaskSize { camera: name(), found: mask.dimensions(), expected });
         }
+        let known = GrayImage::from_fn(mask.width(), mask.height(), |x, y| {
+            let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+            Luma([if known(middle) { 255 } else { 0 }])
+        });
         let mut cracks = Vec::new();
         find_cracks(mask, &mut cracks);
-        cracks.retain(|&crack| counts(crack));
+        cracks.retain(|&crack| is_known(&known, crack));
         if cracks.is_empty() {
             return Err(Error::NoBorder { camera: name() });
         }
@@ -64,11 +73,25 @@ impl Evidence {
         Ok(Self {
             camera: camera.clone(),
             mask: mask.clone(),
+            known,
+            grain: 1.0,
             rays: rays.ok_or_else(|| Error::NoBorder { camera: name() })?,
             normals: cracks.iter().map(|&crack| outwards(mask, crack)).collect(),
             nearest: nearest_cracks(&cracks, expected),
             cracks,
         })
+    }
+
+    /// The same, of a mask that was resampled from another, whose pixels are `pixel` of this mask's
+    /// wide: both put the border off its place, the other's half as far, as it is smoothed.
+    #[must_use]
+    pub fn resampled(self, pixel: f64) -> Self {
+        Self { grain: 1.0_f64.hypot(0.5 * pixel), ..self }
+    }
+
+    /// Standard deviation of the border's place over that of a mask whose pixels were seen at once.
+    pub(crate) fn grain(&self) -> f64 {
+        self.grain
     }
 
     /// The camera.
@@ -79,6 +102,16 @@ impl Evidence {
     /// The silhouette.
     pub fn mask(&self) -> &GrayImage {
         &self.mask
+    }
+
+    /// 255 where it is known whether there is hand, 0 elsewhere.
+    pub(crate) fn known(&self) -> &GrayImage {
+        &self.known
+    }
+
+    /// Whether the pixels on both sides of a drawn crack are known.
+    pub(crate) fn is_known(&self, crack: DVec2) -> bool {
+        is_known(&self.known, crack)
     }
 
     /// Unit directions of the cracks, in the camera's frame.
@@ -104,16 +137,26 @@ impl Evidence {
         self.nearest[y * self.mask.width() as usize + x] as usize
     }
 
-    /// Intersection over union with another mask of this size.
+    /// Intersection over union with another mask of this size, of what is known.
     pub(crate) fn overlap(&self, other: &GrayImage) -> f64 {
         let (mut both, mut either) = (0_u32, 0_u32);
-        for (&a, &b) in self.mask.iter().zip(other.iter()) {
+        let pixels = self.mask.iter().zip(other.iter()).zip(self.known.iter());
+        for ((&a, &b), _) in pixels.filter(|(_, known)| **known > 127) {
             let (a, b) = (a > 127, b > 127);
             both += u32::from(a && b);
             either += u32::from(a || b);
         }
         f64::from(both) / f64::from(either.max(1))
     }
+}
+
+/// The pixels on both sides of a crack.
+fn beside(crack: DVec2) -> [[u32; 2]; 2] {
+    [-0.25, 0.25].map(|offset| [(crack.x + offset) as u32, (crack.y + offset) as u32])
+}
+
+fn is_known(known: &GrayImage, crack: DVec2) -> bool {
+    beside(crack).iter().all(|&[x, y]| known.get_pixel(x, y).0[0] > 127)
 }
 
 /// The middles of the pixel edges between hand and background, px, row by row.
@@ -167,9 +210,8 @@ fn nearest_cracks(cracks: &[DVec2], (width, height): (u32, u32)) -> Vec<u32> {
         cracks.get(crack as usize).map_or(f64::INFINITY, |at| at.distance_squared(centre))
     };
     for (index, crack) in cracks.iter().enumerate() {
-        for offset in [DVec2::splat(0.25), DVec2::splat(-0.25)] {
-            let at = *crack + offset;
-            let pixel = (at.y as usize).min(h - 1) * w + (at.x as usize).min(w - 1);
+        for [x, y] in beside(*crack) {
+            let pixel = y as usize * w + x as usize;
             if far(pixel, index as u32) < far(pixel, nearest[pixel]) {
                 nearest[pixel] = index as u32;
             }

@@ -218,7 +218,7 @@ struct Place<'a> {
     motion: Option<DAffine3>,
     /// What the motion turns about.
     pivot: DVec3,
-    /// Pixels that a millimetre is wide there.
+    /// Pixels that a millimetre is wide there, over the border's grain.
     scale: f64,
     /// From the camera's directions to the world's, as they are before the motion.
     back: DMat3,
@@ -234,7 +234,7 @@ impl<'a> Place<'a> {
             evidence,
             motion,
             pivot,
-            scale: focal / camera.extrinsics.to_camera(pivot).length(),
+            scale: focal / camera.extrinsics.to_camera(pivot).length() / evidence.grain(),
             back: turned * camera.extrinsics.rotation.transpose(),
         }
     }

@@ -94,9 +94,7 @@ impl Search<'_> {
                     let layers = background.drawn.iter().zip(&one.images).zip(&other.images);
                     let differing: u32 = layers
                         .zip(self.evidence)
-                        .map(|(((rest, one), other), seen)| {
-                            difference([rest, one, other], seen.mask())
-                        })
+                        .map(|(((rest, one), other), seen)| difference([rest, one, other], seen))
                         .sum();
                     let ([i, j], [k, l]) = (one.places, other.places);
                     let cost = PIXEL * f64::from(differing) + self.prior.energy(&both);
@@ -143,8 +141,8 @@ impl Search<'_> {
             let mut outside = 0;
             for (v, image) in images.iter_mut().enumerate() {
                 self.draw(v, &own, image)?;
-                let seen = self.evidence[v].mask();
-                outside += difference([seen, seen, image], seen);
+                let seen = &self.evidence[v];
+                outside += difference([seen.mask(), seen.mask(), image], seen);
             }
             let spill = PIXEL * f64::from(outside) + self.prior.energy(&pose);
             drawn.push(Drawn { pose, places, images, spill });
@@ -213,7 +211,7 @@ impl Search<'_> {
         let mut differing = 0;
         for (v, other) in background.drawn.iter().enumerate() {
             self.draw(v, &own, &mut background.scratch)?;
-            differing += difference([other, other, &background.scratch], self.evidence[v].mask());
+            differing += difference([other, other, &background.scratch], &self.evidence[v]);
         }
         Ok(PIXEL * f64::from(differing) + self.prior.energy(pose))
     }
@@ -240,17 +238,19 @@ fn solids(posed: &PosedHand, digits: &[Digit], part: Part) -> Vec<Primitive> {
         .collect()
 }
 
-/// How many pixels of the union of three masks differ from a fourth.
-fn difference([a, b, c]: [&GrayImage; 3], seen: &GrayImage) -> u32 {
+/// How many of the known pixels of the union of three masks differ from what was seen.
+fn difference([a, b, c]: [&GrayImage; 3], seen: &Evidence) -> u32 {
     // So few at a time that a byte can count them.
     const COUNTED: usize = 240;
-    let layers = a.chunks(COUNTED).zip(b.chunks(COUNTED));
-    let layers = layers.zip(c.chunks(COUNTED)).zip(seen.chunks(COUNTED));
+    let layers = a.chunks(COUNTED).zip(b.chunks(COUNTED)).zip(c.chunks(COUNTED));
+    let observed = seen.mask().chunks(COUNTED).zip(seen.known().chunks(COUNTED));
     let mut differing = 0;
-    for (((a, b), c), seen) in layers {
-        let pixels = a.iter().zip(b).zip(c).zip(seen);
-        let counted = pixels.map(|(((a, b), c), seen)| ((a | b | c) ^ seen) >> 7).sum::<u8>();
-        differing += u32::from(counted);
+    for (((a, b), c), (seen, known)) in layers.zip(observed) {
+        let pixels = a.iter().zip(b).zip(c).zip(seen.iter().zip(known));
+        let differ = |(((a, b), c), (seen, known)): (((&u8, &u8), &u8), (&u8, &u8))| {
+            (((a | b | c) ^ seen) & known) >> 7
+        };
+        differing += u32::from(pixels.map(differ).sum::<u8>());
     }
     differing
 }

@@ -103,6 +103,9 @@ impl View {
         }
         let mut last = 0;
         for &crack in self.cracks.iter().step_by(every) {
+            if !evidence.is_known(crack) {
+                continue;
+            }
             let nearest = evidence.nearest(crack);
             if evidence.cracks()[nearest].distance_squared(crack) < CLOSE * CLOSE {
                 continue;

@@ -1,7 +1,8 @@
 //! Poses and hands that are found again.
 
-use glam::DAffine3;
-use phalanx_camera::Rig;
+use glam::{DAffine3, DVec2};
+use image::GrayImage;
+use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::{
     Calibration, CalibrationFrame, Doubt, Error, Evidence, PosePrior, Refinement,
@@ -73,6 +74,45 @@ proptest! {
         prop_assert!(again.energy <= refined.energy * 1.001);
         prop_assert!(mean_error_deg(&again.pose, &refined.pose) < 0.5);
     }
+}
+
+/// Where the pixels of an image of this width end that are told of.
+fn is_left_of(share: f64, width: u32) -> impl Fn(DVec2) -> bool + Copy {
+    move |at| at.x < share * f64::from(width)
+}
+
+#[test]
+fn what_is_not_known_has_no_say() {
+    let (rig, hand) = (rig(), HandShape::adult());
+    let rest = rig.volume.rest_frame();
+    let truth = hand_bent_by([0.3, 0.5, 0.4, 0.6, 0.3], 0.6);
+    let whole = see(&rig, &hand, &truth, &rest);
+    let cut = |tells: fn(&Camera, &GrayImage, f64) -> Evidence| -> Vec<Evidence> {
+        // The fingers reach beyond this share of the first picture.
+        let shares = [0.55, 1.0, 1.0];
+        let cut = |(seen, share): (&Evidence, f64)| {
+            let known = is_left_of(share, seen.mask().width());
+            let mut mask = seen.mask().clone();
+            for (x, y, pixel) in mask.enumerate_pixels_mut() {
+                if !known(DVec2::new(f64::from(x), f64::from(y)) + 0.5) {
+                    pixel.0[0] = 0;
+                }
+            }
+            tells(seen.camera(), &mask, share)
+        };
+        whole.iter().zip(shares).map(cut).collect()
+    };
+    let taken_at_its_word = cut(|camera, mask, _| Evidence::new(camera, mask).unwrap());
+    let known_in_part = cut(|camera, mask, share| {
+        Evidence::within(camera, mask, is_left_of(share, mask.width())).unwrap()
+    });
+    let run = |evidence: &[Evidence]| {
+        Refinement::default().run(&hand, &rest, evidence, &truth, &prior(truth)).unwrap()
+    };
+    let (misled, refined) = (run(&taken_at_its_word), run(&known_in_part));
+    assert!(mean_error_deg(&refined.pose, &truth) < 1.5);
+    assert!(refined.overlaps[0] > 0.97, "{:?}", refined.overlaps);
+    assert!(misled.overlaps[0] < 0.95 && misled.border_px > 1.5 * refined.border_px);
 }
 
 #[test]

@@ -38,6 +38,8 @@ pub struct Window {
     pub hand: LocatedHand,
     /// From the window's pixels to the picture's.
     to_picture: PixelMap,
+    /// The picture's width and height, px.
+    picture: (u32, u32),
 }
 
 impl Window {
@@ -48,7 +50,8 @@ impl Window {
     pub fn onto(camera: &Camera, hand: &LocatedHand) -> Result<Self> {
         let virtual_camera = layout::camera(camera, hand)?;
         let to_picture = PixelMap::between(&virtual_camera, camera);
-        Ok(Self { camera: virtual_camera, hand: *hand, to_picture })
+        let picture = (camera.intrinsics.width, camera.intrinsics.height);
+        Ok(Self { camera: virtual_camera, hand: *hand, to_picture, picture })
     }
 
     /// A mask of the picture as the window shows it: 255 where at least half of a pixel is hand.
@@ -56,12 +59,15 @@ impl Window {
         resample::resample(mask, &self.to_picture, seen);
     }
 
-    /// What its silhouette tells of the pose.
+    /// What its silhouette tells of the pose; of what is beyond the picture's border, nothing.
     ///
     /// # Errors
     /// A silhouette of another size than the window, or without a border.
     pub fn evidence(&self, silhouette: &Silhouette) -> Result<Evidence> {
-        Ok(Evidence::new(&self.camera, &silhouette.mask)?)
+        let inside = resample::inside(&self.to_picture, self.picture);
+        let known = |at: DVec2| inside.get_pixel(at.x as u32, at.y as u32).0[0] > 127;
+        let evidence = Evidence::within(&self.camera, &silhouette.mask, known)?;
+        Ok(evidence.resampled(1.0 / resample::pixels_aside(&self.to_picture)))
     }
 
     /// The picture's pixel for one of the window; `None` where the picture's lens has none.

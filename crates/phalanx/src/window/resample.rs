@@ -39,12 +39,34 @@ pub(super) fn resample(mask: &GrayImage, to_mask: &PixelMap, seen: &mut GrayImag
     }
 }
 
+/// Which pixels of a window lie in the picture, wholly and with a neighbour: 255, all others 0.
+pub(super) fn inside(to_picture: &PixelMap, picture: (u32, u32)) -> GrayImage {
+    let (width, height) = WORKING_SIZE;
+    let least = DVec2::splat(1.5 * pixels_aside(to_picture));
+    let most = DVec2::new(f64::from(picture.0), f64::from(picture.1)) - least;
+    let mut row = Vec::with_capacity(width as usize);
+    let mut inside = GrayImage::new(width, height);
+    for (y, line) in inside.chunks_exact_mut(width as usize).enumerate() {
+        positions(to_picture, y as f64 + 0.5, width, 1.0, &mut row);
+        for (pixel, at) in line.iter_mut().zip(&row) {
+            // A NaN is not inside.
+            *pixel = if at.cmpge(least).all() && at.cmple(most).all() { 255 } else { 0 };
+        }
+    }
+    inside
+}
+
 /// Samples along a side of a pixel: as many as it covers of the mask's pixels.
 fn samples_aside(to_mask: &PixelMap) -> u32 {
+    (pixels_aside(to_mask).ceil() as u32).clamp(1, MOST_SAMPLES)
+}
+
+/// How many of the mask's pixels a pixel in the middle covers along a side.
+pub(super) fn pixels_aside(to_mask: &PixelMap) -> f64 {
     let middle = DVec2::new(f64::from(WORKING_SIZE.0), f64::from(WORKING_SIZE.1)) / 2.0;
     let ends = [-0.5, 0.5].map(|offset| to_mask.map(middle + DVec2::X * offset));
-    let [Some(from), Some(to)] = ends else { return 1 };
-    (from.distance(to).ceil() as u32).clamp(1, MOST_SAMPLES)
+    let [Some(from), Some(to)] = ends else { return 1.0 };
+    from.distance(to)
 }
 
 /// Where `count` samples of a row, so many to the pixel, lie in the mask; NaN where nowhere.
