@@ -4,15 +4,15 @@ use anyhow::Result;
 use clap::Args;
 use comfy_table::{Table, presets};
 use phalanx::{
-    Description, Estimator, Framing, LearntMetric, OrientationRule, Picture, Preset, Progress,
-    Regressor, SceneDescriber, Scenes, Shard, Training, Workspace,
+    Description, Estimator, Framing, LearntMetric, OrientationRule, Preset, Progress, Regressor,
+    Shard, Training,
 };
+use phalanx_hand::Pose;
 use phalanx_refine::{Doubt, Refinement};
-use phalanx_segmentation::Silhouette;
-use rayon::prelude::*;
 
+use crate::held_out::Ground;
 use crate::held_out::errors::mean_error_deg;
-use crate::held_out::{Ground, refined};
+use crate::refining::{Hand, Look, Refining};
 use crate::sets::{self, Augment, Set, Test};
 use crate::{files, progress};
 
@@ -21,8 +21,6 @@ const PRESET: Preset = Preset::Balanced;
 const TESTS: [Test; 2] = [Test::Unseen, Test::All];
 /// Of so many samples of a test one is looked at; shares no factor with the hands in `all`.
 const EVERY: usize = 17;
-/// Scenes from which it is learnt how estimates err.
-const ERROR_SCENES: usize = 4000;
 /// Scenes that are learnt from where there are few.
 const FEW: usize = 2000;
 
@@ -34,21 +32,6 @@ struct Learning {
     training: Training,
     scenes: usize,
     augment: Augment,
-}
-
-/// How its estimates are refined.
-#[derive(Clone)]
-struct Refining {
-    refinement: Refinement,
-    hypotheses: usize,
-    hand: Hand,
-}
-
-/// The hand that is refined with.
-#[derive(Clone, Copy, PartialEq)]
-enum Hand {
-    Mean,
-    Calibrated,
 }
 
 /// Mean errors over the active angles in a test, degrees.
@@ -157,18 +140,8 @@ impl Learning {
         progress.begin("fit the regressor", 1);
         let estimator = part.finish()?;
         progress.step();
-        let fresh = sets::fresh(rig, hand, ERROR_SCENES, self.augment);
+        let fresh = sets::fresh(rig, hand, sets::ERROR_SCENES, self.augment);
         Ok(estimator.learn_errors(&fresh, progress)?)
-    }
-}
-
-impl Refining {
-    fn whole() -> Self {
-        Self {
-            refinement: Refinement { doubt: Some(Doubt::default()), ..Refinement::default() },
-            hypotheses: refined::HYPOTHESES,
-            hand: Hand::Mean,
-        }
     }
 }
 
@@ -179,39 +152,11 @@ fn errors(
     ground: &Ground,
     progress: &dyn Progress,
 ) -> Result<Errors> {
-    let refiner = refined::refiner(estimator, ground, refining.refinement.clone())?;
-    let own = match refining.hand {
-        Hand::Mean => vec![refiner],
-        Hand::Calibrated => {
-            let views: Vec<usize> = (0..ground.rig.cameras.len()).collect();
-            refined::own_hands(estimator, &refiner, &views, set, ground, progress)?
-        }
+    let looks = refining.looks(estimator, set, EVERY, ground, progress)?;
+    let looks: Vec<Look> = looks.into_iter().flatten().collect();
+    let mean = |pose: fn(&Look) -> &Pose| {
+        let errors = looks.iter().map(|look| mean_error_deg(pose(look), &look.truth));
+        errors.sum::<f64>() / looks.len() as f64
     };
-    let describer = SceneDescriber::new(&ground.rig, estimator.descriptor().sight())?;
-    let numbers: Vec<usize> = (0..set.count()).step_by(EVERY).collect();
-    progress.begin(&format!("refine {}", set.name), numbers.len());
-    let memory = || (describer.clone(), Workspace::default());
-    let look = |(describer, workspace): &mut (SceneDescriber, Workspace), &number: &usize| {
-        let scene = set.scene(number);
-        let refiner = &own[number % set.hands() % own.len()];
-        let (estimate, evidence, most) = match estimator.descriptor().sight().framing {
-            Framing::Picture => {
-                let seen: Vec<Silhouette> = describer.silhouettes(&scene)?.cloned().collect();
-                let estimate = estimator.estimate_silhouettes(&seen, workspace)?;
-                (estimate, refiner.evidence(&seen)?, refining.hypotheses)
-            }
-            Framing::Window => {
-                let masks = describer.masks(&scene)?;
-                let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
-                // Hypotheses are of the digits alone, and would have to be placed.
-                (estimator.estimate(&pictures, workspace)?, refiner.evidence_of(workspace)?, 0)
-            }
-        };
-        let refined = refined::refine(estimator, refiner, &estimate, &evidence, most)?;
-        progress.step();
-        Ok([estimate.pose, refined].map(|pose| mean_error_deg(&pose, &scene.pose)))
-    };
-    let errors: Vec<[f64; 2]> = numbers.par_iter().map_init(memory, look).collect::<Result<_>>()?;
-    let mean = |k: usize| errors.iter().map(|both| both[k]).sum::<f64>() / errors.len() as f64;
-    Ok(Errors { estimated: mean(0), refined: mean(1) })
+    Ok(Errors { estimated: mean(|look| &look.estimate), refined: mean(|look| &look.refined) })
 }

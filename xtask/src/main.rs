@@ -25,8 +25,10 @@ mod photographs;
 mod pictures;
 mod plate;
 mod postures;
+mod presets;
 mod principal_axes;
 mod progress;
+mod refining;
 mod report;
 mod saturation;
 mod scale;
@@ -78,6 +80,8 @@ enum Command {
     Hypotheses(hypotheses::Arguments),
     /// Switch off each part of learning and refining in turn, and write docs/ablation.md.
     Ablation(ablation::Arguments),
+    /// What the presets cost in time and memory, and how good they are: docs/presets.md.
+    Presets(presets::Arguments),
     /// Put one of the paper's figures or claims to the test.
     Experiment(experiments::Arguments),
     /// Run every experiment and write one page that a reader of the paper can follow.
@@ -131,6 +135,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::Selection(arguments) => selection::run(arguments)?,
         Command::Hypotheses(arguments) => hypotheses::run(arguments)?,
         Command::Ablation(arguments) => ablation::run(arguments)?,
+        Command::Presets(arguments) => presets::run(arguments)?,
         Command::Experiment(arguments) => experiments::run(arguments)?,
         Command::Report(arguments) => return report::run(arguments),
         Command::Headline(arguments) => headline::run(arguments)?,

@@ -13,6 +13,9 @@ pub(crate) struct Arguments {
     /// The parts that `cargo xtask train --shard` wrote, in any order.
     #[arg(required = true, value_name = "PART")]
     parts: Vec<PathBuf>,
+    /// Learn too how estimates err, as `train --preset NAME --hypotheses` does.
+    #[arg(long)]
+    hypotheses: bool,
     /// Where the model goes.
     #[arg(long, value_name = "FILE", default_value = "target/hand.phalanx")]
     out: PathBuf,
@@ -29,5 +32,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         }
     }
     let estimator = merged.context("there is no part")?.finish()?;
+    let estimator =
+        if arguments.hypotheses { train::with_hypotheses(estimator)? } else { estimator };
     train::save(&estimator, &arguments.out)
 }

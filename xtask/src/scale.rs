@@ -1,6 +1,7 @@
 //! Time and memory of training on ever more samples.
 
 use std::fmt::Write;
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
@@ -66,9 +67,15 @@ fn flatness(costs: &[Cost]) -> Result<String> {
 /// `cargo xtask train --data-set random --augment --samples N`.
 fn measure(samples: usize) -> Result<Cost> {
     let model = files::in_repository("target/performance/scale.phalanx");
+    let (seconds, mebibytes) =
+        train(&["--data-set", "random", "--augment", "--samples", &samples.to_string()], &model)?;
+    Ok(Cost { samples, seconds, mebibytes })
+}
+
+/// Seconds and MiB that a training takes in a process of its own.
+pub(crate) fn train(arguments: &[&str], model: &Path) -> Result<(f64, f64)> {
     let mut train = Command::new(std::env::current_exe()?);
-    train.args(["train", "--data-set", "random", "--augment", "--memory", "--samples"]);
-    train.arg(samples.to_string()).arg("--out").arg(&model);
+    train.arg("train").args(arguments).arg("--memory").arg("--out").arg(model);
     let start = Instant::now();
     let output = train.output().context("starting the training")?;
     let seconds = start.elapsed().as_secs_f64();
@@ -77,5 +84,5 @@ fn measure(samples: usize) -> Result<Cost> {
     let peak =
         text.lines().find_map(|line| line.strip_prefix("peak memory: ")?.strip_suffix(" MiB"));
     let mebibytes = peak.context("the training does not say its memory")?.parse()?;
-    Ok(Cost { samples, seconds, mebibytes })
+    Ok((seconds, mebibytes))
 }

@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use glam::DVec3;
-use phalanx::{Border, Damage, Hands, ItemRandom, Scene, Scenes};
+use phalanx::{Border, Damage, Framing, Hands, ItemRandom, Scene, Scenes};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, coupled_pose, uncoupled_pose};
 
@@ -89,6 +89,35 @@ pub(crate) fn clean<'a>(
     Set { name, rig, hand, poses, damage: Damage::NONE, seed: TRAIN_DAMAGE }
 }
 
+/// Scenes from which it is learnt how a preset's estimates err.
+pub(crate) const ERROR_SCENES: usize = 4000;
+
+/// What a preset learns from that looks at hands so.
+pub(crate) fn for_preset<'a>(
+    framing: Framing,
+    rig: &'a Rig,
+    hand: &'a HandShape,
+    samples: usize,
+) -> Set<'a> {
+    match framing {
+        Framing::Picture => random(rig, hand, samples, Augment::Yes),
+        Framing::Window => placed(rig, hand, samples),
+    }
+}
+
+/// From what it learns how its estimates err.
+pub(crate) fn fresh_for<'a>(framing: Framing, rig: &'a Rig, hand: &'a HandShape) -> Set<'a> {
+    let size = rig.volume.size;
+    let fresh = fresh(rig, hand, ERROR_SCENES, Augment::Yes);
+    match framing {
+        Framing::Picture => fresh,
+        Framing::Window => {
+            let draw = |random: &mut ItemRandom| placed_pose(random, size);
+            Set { name: "placed", poses: independent(ERROR_SCENES, ERROR_POSES, draw), ..fresh }
+        }
+    }
+}
+
 /// How far the arm of [`placed`] hands leans in θ_X and in θ_Y, degrees.
 const LEAN_DEG: f64 = 30.0;
 
@@ -114,13 +143,6 @@ pub(crate) fn placed<'a>(rig: &'a Rig, hand: &'a HandShape, samples: usize) -> S
     let size = rig.volume.size;
     let poses = independent(samples, TRAIN_POSES, |random| placed_pose(random, size));
     Set { name: "placed", poses, ..random(rig, hand, 1, Augment::Yes) }
-}
-
-/// Hands like those of [`placed`], none of which it holds, as [`fresh`] ones are like [`random`].
-pub(crate) fn fresh_placed<'a>(rig: &'a Rig, hand: &'a HandShape, samples: usize) -> Set<'a> {
-    let size = rig.volume.size;
-    let poses = independent(samples, ERROR_POSES, |random| placed_pose(random, size));
-    Set { name: "placed", poses, ..fresh(rig, hand, 1, Augment::Yes) }
 }
 
 /// Hands as of [`placed`] with wrists that bend, as those of people who are not told to keep them straight.

@@ -55,6 +55,10 @@ pub(crate) struct Arguments {
     /// `cargo xtask merge` joins the parts.
     #[arg(long, value_name = "i/n", value_parser = shard, requires = "out")]
     shard: Option<Shard>,
+    /// With `--preset`, learn too how estimates err, from 4,000 further scenes: refinement then tries
+    /// other poses where one is not enough.
+    #[arg(long, requires = "preset", conflicts_with_all = ["poses", "shard"])]
+    hypotheses: bool,
     /// Say how much memory was held at most.
     #[arg(long)]
     memory: bool,
@@ -65,7 +69,7 @@ pub(crate) struct Arguments {
 
 /// The presets by name.
 #[derive(Clone, Copy, ValueEnum)]
-enum PresetName {
+pub(crate) enum PresetName {
     /// 4,000 scenes.
     Fast,
     /// 20,000 scenes.
@@ -93,7 +97,7 @@ impl FramingName {
 }
 
 impl PresetName {
-    fn preset(self) -> Preset {
+    pub(crate) fn preset(self) -> Preset {
         match self {
             Self::Fast => Preset::Fast,
             Self::Default => Preset::Balanced,
@@ -177,8 +181,7 @@ fn by_preset(preset: Preset, arguments: &Arguments, rig: &Rig, hand: &HandShape)
     let framing = arguments.framing.map_or_else(Framing::default, FramingName::framing);
     let set = match (&arguments.poses, framing) {
         (Some(path), _) => sets::own_poses(rig, hand, &files::poses(path)?.poses, samples),
-        (None, Framing::Picture) => sets::random(rig, hand, samples, Augment::Yes),
-        (None, Framing::Window) => sets::placed(rig, hand, samples),
+        (None, framing) => sets::for_preset(framing, rig, hand, samples),
     };
     let training = Training { framing, ..preset.training() };
     stream(&training, &set, arguments, rig, hand)
@@ -200,12 +203,22 @@ fn stream(
     }
     if arguments.shard.is_none() {
         let out = arguments.out.as_deref().unwrap_or(MODEL.as_ref());
-        return save(&part.finish()?, out);
+        let estimator = part.finish()?;
+        let estimator = if arguments.hypotheses { with_hypotheses(estimator)? } else { estimator };
+        return save(&estimator, out);
     }
     let out = arguments.out.as_deref().context("a shard has a place to go to")?;
     let bytes = part.to_bytes()?;
     files::write_whole(out, &bytes)?;
     files::print(&format!("{}: {} KiB\n", out.display(), bytes.len().div_ceil(1024)))
+}
+
+/// An estimator that knows how it errs on what a preset learns from.
+pub(crate) fn with_hypotheses(estimator: Estimator) -> Result<Estimator> {
+    let (rig, hand) = (estimator.rig().clone(), estimator.hand().clone());
+    let fresh = sets::fresh_for(estimator.descriptor().sight().framing, &rig, &hand);
+    let bar = progress::Bar::new();
+    Ok(estimator.learn_errors(&fresh, &bar)?)
 }
 
 /// Writes a model and says what it is.

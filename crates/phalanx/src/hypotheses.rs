@@ -108,7 +108,9 @@ impl Estimator {
     /// A pose without what windows tell.
     fn unplaced(&self, pose: &Pose) -> Pose {
         let mut pose = *pose;
-        self.placed().iter().for_each(|&dof| pose[dof] = Pose::REST[dof]);
+        for &dof in self.placed() {
+            pose[dof] = Pose::REST[dof];
+        }
         pose
     }
 }

@@ -187,7 +187,9 @@ impl Refiner {
             // Palm and arm tell where the hand is, whatever the fingers do.
             let mut placed = hypotheses.to_vec();
             for hypothesis in &mut placed {
-                PLACED.iter().for_each(|&dof| hypothesis.pose[dof] = refined.pose[dof]);
+                for dof in PLACED {
+                    hypothesis.pose[dof] = refined.pose[dof];
+                }
             }
             return self.refine_hypotheses(evidence, estimate, &placed);
         }

@@ -246,11 +246,10 @@ fn difference([a, b, c]: [&GrayImage; 3], seen: &Evidence) -> u32 {
     let observed = seen.mask().chunks(COUNTED).zip(seen.known().chunks(COUNTED));
     let mut differing = 0;
     for (((a, b), c), (seen, known)) in layers.zip(observed) {
-        let pixels = a.iter().zip(b).zip(c).zip(seen.iter().zip(known));
-        let differ = |(((a, b), c), (seen, known)): (((&u8, &u8), &u8), (&u8, &u8))| {
-            (((a | b | c) ^ seen) & known) >> 7
-        };
-        differing += u32::from(pixels.map(differ).sum::<u8>());
+        let drawn = a.iter().zip(b).zip(c).map(|((a, b), c)| a | b | c);
+        let pixels = drawn.zip(seen).zip(known);
+        let counted = pixels.map(|((drawn, seen), known)| ((drawn ^ seen) & known) >> 7);
+        differing += u32::from(counted.sum::<u8>());
     }
     differing
 }

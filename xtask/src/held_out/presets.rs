@@ -16,7 +16,7 @@ use super::Ground;
 use super::errors::Truth;
 use super::refined;
 use super::row::{Outcome, Row};
-use crate::sets::{self, Augment, Set};
+use crate::sets::{self, Set};
 use crate::table1::single_view;
 
 /// How a learnt preset answers.
@@ -43,9 +43,6 @@ enum Frame {
     /// As large as they are, to be looked at through windows.
     Masks(Vec<GrayImage>),
 }
-
-/// Scenes from which it is learnt how estimates err, where they are refined.
-const ERROR_SCENES: usize = 4000;
 
 /// Of so many samples of a test one is refined, which takes its time; shares no factor with the
 /// number of hands that a test shows in turn.
@@ -124,19 +121,15 @@ impl Learnt {
         let names: Vec<&str> =
             views.iter().map(|&view| ground.rig.cameras[view].name.as_str()).collect();
         let rig = ground.rig.select(&names)?;
-        let set = match framing {
-            Framing::Picture => sets::random(&rig, &ground.hand, preset.scenes(), Augment::Yes),
-            Framing::Window => sets::placed(&rig, &ground.hand, preset.scenes()),
-        };
+        let set = sets::for_preset(framing, &rig, &ground.hand, preset.scenes());
         let training = Training { framing, ..preset.training() };
         let part = training.shard(&rig, &ground.hand, &set, Shard::WHOLE, progress)?;
         let samples = set.count() - part.left_out();
         progress.begin("fit the regressor", 1);
         let mut estimator = part.finish()?;
         progress.step();
-        // Through windows hypotheses would be of the digits alone, and have to be placed.
-        if refines(&answers) && framing == Framing::Picture {
-            let fresh = sets::fresh(&rig, &ground.hand, ERROR_SCENES, Augment::Yes);
+        if refines(&answers) {
+            let fresh = sets::fresh_for(framing, &rig, &ground.hand);
             estimator = estimator.learn_errors(&fresh, progress)?;
         }
         let mean = Dof::ALL.map(|dof| {
@@ -164,19 +157,20 @@ impl Learnt {
         own: Option<&Refiner>,
         workspace: &mut Workspace,
     ) -> Result<Vec<Pose>> {
-        let (estimate, evidence, most) = match frame {
+        let (estimate, evidence) = match frame {
             Frame::Silhouettes(all) => {
                 let seen = self.of_views(all);
                 let estimate = self.estimator.estimate_silhouettes(&seen, workspace)?;
-                (estimate, self.refiner.evidence(&seen)?, refined::HYPOTHESES)
+                (estimate, self.refiner.evidence(&seen)?)
             }
             Frame::Masks(all) => {
                 let pictures: Vec<Picture<'_>> =
                     self.views.iter().map(|&view| Picture::Mask(&all[view])).collect();
                 let estimate = self.estimator.estimate(&pictures, workspace)?;
-                (estimate, self.refiner.evidence_of(workspace)?, 0)
+                (estimate, self.refiner.evidence_of(workspace)?)
             }
         };
+        let most = refined::HYPOTHESES;
         let refine =
             |refiner| refined::refine(&self.estimator, refiner, &estimate, &evidence, most);
         let answers = self.answers.iter().map(|answer| match answer {
