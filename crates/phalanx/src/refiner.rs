@@ -16,8 +16,15 @@ use crate::{
 /// Poses from the prior that tell how angles go together.
 const POSTURES: u64 = 2000;
 
-/// Where borders stay further apart than this, px, other starts are worth their time.
-const APART: f64 = 0.33;
+/// Where borders stay further apart than this, px, other starts are worth their time. Two views leave
+/// more open, so that what fits well may still be wrong; a hand that had to be doubted never fits as well.
+fn apart(refined: &Refined) -> f64 {
+    match (refined.doubted, refined.overlaps.len()) {
+        (true, _) => 0.35,
+        (false, 2) => 0.28,
+        (false, _) => 0.33,
+    }
+}
 
 /// Fits the hand to the silhouettes that it was estimated from.
 #[derive(Debug, Clone)]
@@ -181,7 +188,7 @@ impl Refiner {
     ) -> Result<Vec<Refined>> {
         if evidence.len() > 1 || hypotheses.is_empty() {
             let refined = self.refine(evidence, estimate)?;
-            if hypotheses.is_empty() || refined.border_px <= APART {
+            if hypotheses.is_empty() || refined.border_px <= apart(&refined) {
                 return Ok(vec![refined]);
             }
             // Palm and arm tell where the hand is, whatever the fingers do.

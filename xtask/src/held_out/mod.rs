@@ -61,6 +61,10 @@ pub(crate) struct Arguments {
     /// seen at one of the trained angles.
     #[arg(long, value_name = "FILE.csv")]
     poses: Option<PathBuf>,
+    /// How many of the rig's cameras the presets look through, numbers separated by commas: 1 (the
+    /// top), 2 or all; each of these by default.
+    #[arg(long, value_name = "N", value_delimiter = ',', requires = "methods")]
+    views: Vec<usize>,
     /// Which way shape contexts are turned.
     #[arg(long, value_enum)]
     orientation: Option<Orientation>,
@@ -152,15 +156,20 @@ fn rows(
     let methods = methods(arguments);
     let presets: Vec<_> = methods.iter().filter_map(|method| method.preset()).collect();
     let placed = presets.clone();
+    let counts = presets::view_counts(ground);
+    ensure!(
+        arguments.views.iter().all(|count| counts.contains(count)),
+        "--views takes some of {counts:?} for this rig"
+    );
     let methods = methods.into_iter().filter(|method| method.preset().is_none()).collect();
     let protocol = Protocol { ground, methods, tests, motion: &motion };
     let (learners, mut rows) = protocol.run(&sets, progress)?;
     let pictures = protocol.tests.iter().any(|test| *test != Test::Placed) || masks.is_some();
     let presets = if pictures { presets } else { Vec::new() };
-    let learnt = presets::learn(&presets, Framing::Picture, ground, progress)?;
+    let learnt = presets::learn(&presets, Framing::Picture, &arguments.views, ground, progress)?;
     rows.extend(protocol.test_presets(&learnt, progress)?);
     if protocol.tests.contains(&Test::Placed) {
-        let learnt = presets::learn(&placed, Framing::Window, ground, progress)?;
+        let learnt = presets::learn(&placed, Framing::Window, &arguments.views, ground, progress)?;
         let set = Test::Placed.set(&ground.rig, &ground.hand, &motion);
         rows.extend(presets::test(&set, &learnt, ground, progress)?);
     }

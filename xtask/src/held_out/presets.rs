@@ -81,11 +81,12 @@ pub(crate) fn name(preset: Preset, answer: Answer) -> &'static str {
     }
 }
 
-/// Learns presets through one view (the top), two next to each other and all, looking at whole
-/// pictures or through windows.
+/// Learns presets through one view (the top), two next to each other and all, or so many of them as
+/// `counts` says if it says any; looking at whole pictures or through windows.
 pub(crate) fn learn(
     asked: &[(Preset, Answer)],
     framing: Framing,
+    counts: &[usize],
     ground: &Ground,
     progress: &dyn Progress,
 ) -> Result<Vec<Learnt>> {
@@ -95,7 +96,9 @@ pub(crate) fn learn(
             asked.iter().filter(|(asked, _)| *asked == preset).map(|&(_, answer)| answer).collect();
         let answers: Vec<Answer> =
             answers.into_iter().filter(|answer| answer.is_given(framing)).collect();
-        for views in views(ground).into_iter().filter(|_| !answers.is_empty()) {
+        let wanted = |views: &Vec<usize>| counts.is_empty() || counts.contains(&views.len());
+        let views = views(ground).into_iter().filter(wanted);
+        for views in views.filter(|_| !answers.is_empty()) {
             let asked = Asked { preset, answers: answers.clone(), framing, views };
             learnt.push(Learnt::new(asked, ground, progress)?);
         }
@@ -113,6 +116,11 @@ fn views(ground: &Ground) -> Vec<Vec<usize>> {
     let mut views = vec![vec![single], (0..all.min(2)).collect(), (0..all).collect()];
     views.dedup();
     views
+}
+
+/// How many cameras presets can look through.
+pub(crate) fn view_counts(ground: &Ground) -> Vec<usize> {
+    views(ground).iter().map(Vec::len).collect()
 }
 
 impl Learnt {
