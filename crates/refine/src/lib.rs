@@ -12,6 +12,7 @@ mod proportions;
 mod refinement;
 mod search;
 mod system;
+mod touching;
 mod view;
 
 pub use calibration::{Calibrated, Calibration, CalibrationFrame};

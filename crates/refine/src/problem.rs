@@ -8,6 +8,7 @@ use phalanx_hand::{Dof, HandShape, Link, Motions, Pose, PosedHand, Primitive};
 use crate::doubt::{CameraDoubt, Correction, HandDoubt, Moves};
 use crate::proportions::{Proportions, Slope};
 use crate::system::{FrameSystem, Row};
+use crate::touching::{Touch, touches};
 use crate::view::{Match, View};
 use crate::{Evidence, PosePrior, Result};
 
@@ -189,8 +190,14 @@ impl Problem<'_> {
                     rows.shared.extend(place.row(&contact, of_hand + Correction::NUMBERS * v));
                 }
                 let energy = measure.energy(residual);
-                system.add(residual, energy, measure.weight(residual), &rows.own, &rows.shared);
+                let weight = measure.weight(residual);
+                system.add_border(residual, energy, weight, &rows.own, &rows.shared);
             }
+        }
+        for touch in touches(&posed) {
+            rows.of_touch(&touch, &posed, &motions, slopes.as_deref());
+            let Touch { excess, .. } = touch;
+            system.add(excess, touch.energy(), Touch::WEIGHT, &rows.own, &rows.shared);
         }
         Ok(system)
     }
@@ -328,6 +335,34 @@ impl Rows {
         self.own.sort_unstable_by_key(|&(slot, _)| slot);
     }
 
+    /// The slopes of how deep two digits are in each other.
+    fn of_touch(
+        &mut self,
+        touch: &Touch,
+        posed: &PosedHand,
+        motions: &Motions,
+        slopes: Option<&[[Vec<Slope>; 3]]>,
+    ) {
+        self.clear();
+        for ((&solid, &place), away) in touch.solids.iter().zip(&touch.places).zip([-1.0, 1.0]) {
+            let centers = [0, 1].map(|k| posed.primitives[solid].balls()[k].center);
+            let weights = [1.0 - place, place, 0.0];
+            let contact = Contact {
+                links: &posed.links[solid],
+                weights,
+                points: [(1.0 - place, centers[0]), (place, centers[1]), (0.0, DVec3::ZERO)],
+                normal: touch.apart * away,
+            };
+            self.of_pose(&contact, motions);
+            if let Some(slopes) = slopes {
+                self.of_proportions(&contact, &slopes[solid], 0.0);
+                // It is as thick as on average.
+                let thick = Contact { weights: [0.5, 0.5, 0.0], normal: DVec3::ZERO, ..contact };
+                self.of_proportions(&thick, &slopes[solid], -1.0);
+            }
+        }
+    }
+
     fn of_proportions(&mut self, contact: &Contact<'_>, slopes: &[Vec<Slope>; 3], scale: f64) {
         for (weight, slopes) in contact.weights.iter().zip(slopes) {
             for slope in slopes.iter().filter(|_| *weight > 0.0) {
@@ -345,11 +380,13 @@ impl Rows {
 #[cfg(test)]
 mod tests {
     use phalanx_camera::{Camera, Rig};
+    use phalanx_hand::Digit;
     use phalanx_render::Renderer;
     use proptest::prelude::*;
 
     use super::*;
     use crate::hull::Hull;
+    use crate::touching;
 
     fn rig() -> Rig {
         Rig::from_toml(include_str!("../../../fixtures/rigs/desk.toml")).unwrap()
@@ -371,7 +408,7 @@ mod tests {
     ) -> f64 {
         let hand = shared.proportions.hand(problem.given);
         let posed = hand.pose(&moment.pose, problem.rest);
-        let mut energy = 0.0;
+        let mut energy = touching::energy(&posed);
         for (v, (view, evidence)) in views.iter().zip(problem.frames[0].evidence).enumerate() {
             let correction = moment.corrections.get(v).or(shared.corrections.get(v));
             let place = Place::new(evidence, correction, problem.rest.translation);
@@ -399,6 +436,7 @@ mod tests {
             offset in prop::array::uniform20(-0.2..0.2_f64),
             global in prop::array::uniform8(-0.1..0.1_f64),
             moves in prop_oneof![Just(Moves::Never), Just(Moves::EveryFrame)],
+            crossed in any::<bool>(),
         ) {
             let (rig, given) = (rig(), HandShape::adult());
             let rest = rig.volume.rest_frame();
@@ -407,6 +445,14 @@ mod tests {
             let mut pose = truth;
             pose.0.iter_mut().zip(offset).for_each(|(angle, offset)| *angle += offset);
             pose.0[20..].iter_mut().zip(global).for_each(|(number, offset)| *number += offset);
+            if crossed {
+                let (one, other) = (Digit::Index.dofs(), Digit::Middle.dofs());
+                for (&one, other) in one[1..].iter().zip(&other[1..]) {
+                    pose[one] = pose[*other] + 0.01;
+                }
+                [pose[one[0]], pose[other[0]]] = [-0.25, 0.25];
+                prop_assert!(touches(&given.pose(&pose, &rest)).count() > 0);
+            }
             let evidence: Vec<Evidence> =
                 rig.cameras.iter().map(|camera| seen(camera, &given, &truth, &rest)).collect();
             // So vague that only the border has a say.

@@ -4,6 +4,7 @@ use glam::DAffine3;
 use image::GrayImage;
 use phalanx_hand::{Digit, Dof, HandShape, Link, Pose, PosedHand, Primitive};
 
+use crate::touching;
 use crate::view::View;
 use crate::{Evidence, PosePrior, Result};
 
@@ -213,7 +214,7 @@ impl Search<'_> {
             self.draw(v, &own, &mut background.scratch)?;
             differing += difference([other, other, &background.scratch], &self.evidence[v]);
         }
-        Ok(PIXEL * f64::from(differing) + self.prior.energy(pose))
+        Ok(PIXEL * f64::from(differing) + self.prior.energy(pose) + touching::energy(&posed))
     }
 
     fn draw(&mut self, view: usize, solids: &[Primitive], image: &mut GrayImage) -> Result<()> {

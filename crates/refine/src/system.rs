@@ -76,10 +76,22 @@ impl FrameSystem {
     }
 
     /// Adds a residual of the border. Both rows are in ascending order.
-    pub(crate) fn add(&mut self, residual: f64, energy: f64, weight: f64, own: &Row, shared: &Row) {
-        self.energy += energy;
+    pub(crate) fn add_border(
+        &mut self,
+        residual: f64,
+        energy: f64,
+        weight: f64,
+        own: &Row,
+        shared: &Row,
+    ) {
         self.border.energy += energy;
         self.border.count += 1;
+        self.add(residual, energy, weight, own, shared);
+    }
+
+    /// Adds any residual. Both rows are in ascending order.
+    pub(crate) fn add(&mut self, residual: f64, energy: f64, weight: f64, own: &Row, shared: &Row) {
+        self.energy += energy;
         let hessian = &mut self.own_hessian;
         add_outer(hessian, &mut self.own_gradient, self.own, own, residual, weight);
         let hessian = &mut self.shared_hessian;

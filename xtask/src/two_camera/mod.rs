@@ -3,6 +3,7 @@
 mod angles;
 mod fit;
 mod frames;
+mod paper;
 mod sheet;
 
 use std::path::{Path, PathBuf};
@@ -131,6 +132,7 @@ fn fit(
         files::write_whole(&arguments.out.join(format!("poses-{what}.csv")), &csv)?;
         sheet::write_fits(&arguments.out, what, &whole, hand, &rest, &poses)?;
     }
+    report.push(paper::write(&arguments.out, rig, &own, arguments.samples, &whole, progress)?);
     Ok(report)
 }
 

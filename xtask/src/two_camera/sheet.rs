@@ -35,8 +35,7 @@ pub(super) fn write(folder: &Path, looks: &[Look]) -> Result<()> {
     Ok(())
 }
 
-/// One row for each frame: the photograph through each window, the silhouette's contour (green) and
-/// that of the fitted hand (magenta).
+/// One row for each frame, as of [`fit`].
 pub(super) fn write_fits(
     folder: &Path,
     name: &str,
@@ -47,18 +46,7 @@ pub(super) fn write_fits(
 ) -> Result<()> {
     let mut panels = Vec::new();
     for (look, pose) in looks.iter().zip(poses) {
-        let Ok(seen) = &look.seen else { continue };
-        let solids = hand.pose(pose, rest).primitives;
-        let mut views = Vec::new();
-        for (view, window) in seen.windows.iter().enumerate() {
-            let drawn = Renderer::new(&window.camera)?.silhouette(&solids)?;
-            let mut panel = through(&look.images[view], window, &seen.silhouettes[view]);
-            if let Ok(drawn) = Silhouette::from_mask(&drawn) {
-                trace(&mut panel, &drawn, FRAME, 1);
-            }
-            views.push(panel);
-        }
-        panels.push(beside(&views));
+        panels.extend(fit(look, hand, rest, pose)?);
     }
     let sheet = (COLUMNS * ROWS) as usize;
     for (panels, number) in panels.chunks(sheet).zip(1..) {
@@ -66,6 +54,28 @@ pub(super) fn write_fits(
         files::write_png(&path, &mosaic(panels, COLUMNS, 6))?;
     }
     Ok(())
+}
+
+/// The photograph through each window, the silhouette's contour (green) and that of a fitted hand
+/// (magenta); nothing where no hand was found.
+pub(super) fn fit(
+    look: &Look,
+    hand: &HandShape,
+    rest: &DAffine3,
+    pose: &Pose,
+) -> Result<Option<RgbImage>> {
+    let Ok(seen) = &look.seen else { return Ok(None) };
+    let solids = hand.pose(pose, rest).primitives;
+    let mut views = Vec::new();
+    for (view, window) in seen.windows.iter().enumerate() {
+        let drawn = Renderer::new(&window.camera)?.silhouette(&solids)?;
+        let mut panel = through(&look.images[view], window, &seen.silhouettes[view]);
+        if let Ok(drawn) = Silhouette::from_mask(&drawn) {
+            trace(&mut panel, &drawn, FRAME, 1);
+        }
+        views.push(panel);
+    }
+    Ok(Some(beside(&views)))
 }
 
 fn panel(look: &Look) -> RgbImage {
