@@ -3,6 +3,7 @@
 mod ablation;
 mod bench_peers;
 mod chart;
+mod check_crates;
 mod contact_sheet;
 mod data_set;
 mod described;
@@ -96,6 +97,8 @@ enum Command {
     Headline(headline::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
     Pictures(pictures::Arguments),
+    /// Check the crates as those get them who depend on one alone: licences, features, packages.
+    CheckCrates(check_crates::Arguments),
     /// Measure our crates beside their best peers, and write docs/peers.md.
     BenchPeers(bench_peers::Arguments),
     /// Time every stage and write docs/performance.md.
@@ -140,6 +143,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::ContactSheet(arguments) => contact_sheet::run(arguments)?,
         Command::TwoCamera(arguments) => two_camera::run(arguments)?,
         Command::Pictures(arguments) => pictures::run(arguments)?,
+        Command::CheckCrates(arguments) => check_crates::run(arguments)?,
         Command::BenchPeers(arguments) => bench_peers::run(arguments)?,
         Command::Performance(arguments) => performance::run(arguments)?,
     }
