@@ -2,7 +2,9 @@
 
 use std::io::Cursor;
 
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, ImageResult, Limits};
+use image::{
+    DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, ImageResult, Limits,
+};
 
 use crate::{Error, Result};
 
@@ -26,22 +28,23 @@ const MOST_PIXELS_ASIDE: u32 = 16_384;
 /// [`Error::TruncatedPicture`] for a JPEG file that lacks its end; [`Error::Undecodable`] for whatever
 /// else is wrong with a file, a side above 16,384 px or too much memory.
 pub fn decode_picture(file: &[u8], most_memory: u64) -> Result<DynamicImage> {
-    let reader = ImageReader::new(Cursor::new(file)).with_guessed_format();
-    let reader = reader.expect("bytes in memory can be read");
-    if reader.format() == Some(ImageFormat::Jpeg) && is_cut_off(file) {
-        return Err(Error::TruncatedPicture);
-    }
     // An image error's text tells its cause already. The JPEG decoder quotes some causes together
     // with the end of their line.
-    decode(reader, most_memory)
-        .map_err(|error| Error::Undecodable { reason: error.to_string().replace("\\n\"", "\"") })
+    let undecodable =
+        |error: ImageError| Error::Undecodable { reason: error.to_string().replace("\\n\"", "\"") };
+    let format = image::guess_format(file).map_err(undecodable)?;
+    if format == ImageFormat::Jpeg && is_cut_off(file) {
+        return Err(Error::TruncatedPicture);
+    }
+    decode(file, format, most_memory).map_err(undecodable)
 }
 
-fn decode(mut reader: ImageReader<Cursor<&[u8]>>, most_memory: u64) -> ImageResult<DynamicImage> {
+fn decode(file: &[u8], format: ImageFormat, most_memory: u64) -> ImageResult<DynamicImage> {
     let mut limits = Limits::default();
     limits.max_image_width = Some(MOST_PIXELS_ASIDE);
     limits.max_image_height = Some(MOST_PIXELS_ASIDE);
     limits.max_alloc = Some(most_memory);
+    let mut reader = ImageReader::with_format(Cursor::new(file), format);
     reader.limits(limits.clone());
     let mut decoder = reader.into_decoder()?;
     limits.reserve(decoder.total_bytes())?;

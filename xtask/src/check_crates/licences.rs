@@ -2,6 +2,7 @@
 //! reads too. That tool also knows of published vulnerabilities, which need a database from outside.
 
 use std::collections::BTreeMap;
+use std::fmt::Write;
 
 use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
@@ -25,10 +26,10 @@ pub(super) fn check(packages: &[Package]) -> Result<()> {
     let mut problems = String::new();
     for package in packages {
         if let Err(error) = check_package(package, &allowed) {
-            problems += &format!("\n{} {}: {error:#}", package.name, package.version);
+            writeln!(problems, "{} {}: {error:#}", package.name, package.version)?;
         }
     }
-    ensure!(problems.is_empty(), "{problems}");
+    ensure!(problems.is_empty(), "dependencies that deny.toml does not allow:\n{problems}");
     for (name, versions) in duplicates(packages) {
         eprintln!("note: several versions of {name}: {}", versions.join(", "));
     }
