@@ -10,6 +10,7 @@ mod described;
 mod experiments;
 mod files;
 mod fixtures;
+mod fuzz;
 mod global_pose;
 mod headline;
 mod held_out;
@@ -99,6 +100,8 @@ enum Command {
     Pictures(pictures::Arguments),
     /// Check the crates as those get them who depend on one alone: licences, features, packages.
     CheckCrates(check_crates::Arguments),
+    /// Feed damaged files to everything that reads files, as docs/fuzzing.md tells.
+    Fuzz(fuzz::Arguments),
     /// Measure our crates beside their best peers, and write docs/peers.md.
     BenchPeers(bench_peers::Arguments),
     /// Time every stage and write docs/performance.md.
@@ -144,6 +147,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::TwoCamera(arguments) => two_camera::run(arguments)?,
         Command::Pictures(arguments) => pictures::run(arguments)?,
         Command::CheckCrates(arguments) => check_crates::run(arguments)?,
+        Command::Fuzz(arguments) => fuzz::run(arguments)?,
         Command::BenchPeers(arguments) => bench_peers::run(arguments)?,
         Command::Performance(arguments) => performance::run(arguments)?,
     }
