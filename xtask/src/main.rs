@@ -3,12 +3,14 @@
 mod ablation;
 mod bench_peers;
 mod chart;
+mod check_crates;
 mod contact_sheet;
 mod data_set;
 mod described;
 mod experiments;
 mod files;
 mod fixtures;
+mod fuzz;
 mod global_pose;
 mod headline;
 mod held_out;
@@ -100,6 +102,10 @@ enum Command {
     Headline(headline::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
     Pictures(pictures::Arguments),
+    /// Check the crates as those get them who depend on one alone: licences, features, packages.
+    CheckCrates(check_crates::Arguments),
+    /// Feed damaged files to everything that reads files, as docs/fuzzing.md tells.
+    Fuzz(fuzz::Arguments),
     /// Measure our crates beside their best peers, and write docs/peers.md.
     BenchPeers(bench_peers::Arguments),
     /// Time every stage and write docs/performance.md.
@@ -145,6 +151,8 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::ContactSheet(arguments) => contact_sheet::run(arguments)?,
         Command::TwoCamera(arguments) => two_camera::run(arguments)?,
         Command::Pictures(arguments) => pictures::run(arguments)?,
+        Command::CheckCrates(arguments) => check_crates::run(arguments)?,
+        Command::Fuzz(arguments) => fuzz::run(arguments)?,
         Command::BenchPeers(arguments) => bench_peers::run(arguments)?,
         Command::Performance(arguments) => performance::run(arguments)?,
     }

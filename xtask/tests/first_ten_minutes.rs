@@ -1,5 +1,5 @@
 //! A stranger's first ten minutes with each library: a fresh crate outside the workspace that depends
-//! on it by path, with the README's examples in it as printed.
+//! on it by path, with the README's examples in it as printed. The repository's README comes last.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -89,11 +89,10 @@ fn dependencies(code: &str, library: &str) -> String {
 }
 
 /// Makes the stranger's crate, and compiles and runs what is in it.
-fn try_out(library: &str, folder: &str, scratch: &Path) {
-    let readme = repository().join("crates").join(folder).join("README.md");
-    let examples = examples(&std::fs::read_to_string(readme).expect("a README"));
-    assert!(!examples.is_empty(), "{library}: the README has no example");
-    let home = scratch.join(folder);
+fn try_out(library: &str, readme: &str, home: &Path) {
+    let text = std::fs::read_to_string(repository().join(readme)).expect("a README");
+    let examples = examples(&text);
+    assert!(!examples.is_empty(), "{readme} has no example");
     std::fs::create_dir_all(home.join("src/bin")).expect("a folder");
     let all: String = examples.iter().map(|example| example.code.as_str()).collect();
     let manifest = format!(
@@ -110,11 +109,11 @@ fn try_out(library: &str, folder: &str, scratch: &Path) {
         std::fs::write(path, program(&example.code)).expect("a program");
         let verb = if example.only_compiles { "build" } else { "run" };
         let mut cargo = Command::new(env!("CARGO"));
-        cargo.current_dir(&home).env("CARGO_TARGET_DIR", SHARED);
+        cargo.current_dir(home).env("CARGO_TARGET_DIR", SHARED);
         let output = cargo.args([verb, "--offline", "--quiet", "--bin", &name]).output();
         let output = output.expect("cargo starts");
         let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{library}, example {number}:\n{said}");
+        assert!(output.status.success(), "{readme}, example {number}:\n{said}");
     }
 }
 
@@ -127,8 +126,9 @@ fn every_readme_runs_as_printed() {
             "phalanx" => folder.to_owned(),
             _ => format!("phalanx-{folder}"),
         };
-        try_out(&library, folder, &scratch);
+        try_out(&library, &format!("crates/{folder}/README.md"), &scratch.join(folder));
     }
+    try_out("phalanx", "README.md", &scratch.join("repository"));
     std::fs::remove_dir_all(&scratch).expect("the scratch folder goes away");
 }
 

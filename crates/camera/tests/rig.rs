@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec2, DVec3};
 use phalanx_camera::{Error, Rig};
 
-const DESK: &str = include_str!("../../../fixtures/rigs/desk.toml");
+const DESK: &str = include_str!("../fixtures/desk.toml");
 
 const VOLUME: &str = "
     [volume]

@@ -22,7 +22,7 @@ const SAMPLES: usize = 837;
 const PICTURE: (u32, u32) = (640, 480);
 
 fn rig() -> Rig {
-    Rig::from_toml(include_str!("../../../fixtures/rigs/desk.toml")).expect("a valid rig")
+    Rig::from_toml(include_str!("../fixtures/desk.toml")).expect("a valid rig")
 }
 
 /// A hand whose digits bend independently, turned about the forearm.

@@ -22,7 +22,7 @@ fn closing(closed: f64, theta_z_deg: f64) -> Pose {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let rig = Rig::from_toml(include_str!("../../../fixtures/rigs/desk.toml"))?;
+    let rig = Rig::from_toml(include_str!("../fixtures/desk.toml"))?;
     let hand = HandShape::adult();
     let stages = (0..=20).map(|k| f64::from(k) / 20.0);
     let poses: Vec<Pose> = stages

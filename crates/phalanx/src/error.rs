@@ -133,6 +133,15 @@ pub enum Error {
         /// Width and height of the camera's image, px.
         expected: (u32, u32),
     },
+    /// A JPEG file without its end.
+    #[error("the JPEG file is truncated")]
+    TruncatedPicture,
+    /// A file that is no picture, a damaged one, or one that is too large.
+    #[error("{reason}")]
+    Undecodable {
+        /// What is wrong with it.
+        reason: String,
+    },
     /// The bytes are not a file of this project.
     #[error("not a phalanx {what}: the file does not begin with its mark")]
     ForeignFile {

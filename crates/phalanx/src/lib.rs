@@ -3,6 +3,7 @@
 mod container;
 mod coverage;
 mod damage;
+mod decode;
 mod describe;
 mod descriptor;
 mod error;
@@ -28,6 +29,7 @@ mod training_views;
 mod window;
 
 pub use damage::{Border, Damage, Hands};
+pub use decode::decode_picture;
 pub use describe::{Describer, OrientationRule, Sight, WORKING_SIZE, working_camera};
 pub use descriptor::{Beside, Descriptor, describe_scenes};
 pub use error::{Error, Result};
@@ -51,8 +53,3 @@ pub use training_views::{
     PoseContexts, SceneDescriber, describe_each, describe_poses, draw_silhouette,
 };
 pub use window::{Framing, Window, WindowFinder};
-
-/// The example of the repository's README, which must compile.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct RepositoryReadme;

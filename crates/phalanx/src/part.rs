@@ -352,7 +352,7 @@ mod tests {
     use crate::{NominalScenes, Silent};
 
     fn part() -> Part {
-        let rig = Rig::from_toml(include_str!("../../../fixtures/rigs/desk.toml")).unwrap();
+        let rig = Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap();
         let rig = rig.select(&["top"]).unwrap();
         let hand = HandShape::adult();
         let poses: Vec<Pose> = (0..24)

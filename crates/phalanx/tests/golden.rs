@@ -14,11 +14,11 @@ use phalanx_render::{Appearance, Renderer};
 const BOUNDARY_PIXELS: usize = 3;
 
 fn folder() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/golden"))
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/golden"))
 }
 
 fn rig() -> Rig {
-    Rig::from_toml(include_str!("../../../fixtures/rigs/desk.toml")).unwrap()
+    Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap()
 }
 
 fn posed(degrees: &[(Dof, f64)]) -> Pose {

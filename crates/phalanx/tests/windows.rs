@@ -19,7 +19,7 @@ const THROUGH_WINDOWS: Sight =
     Sight { orientation: OrientationRule::ForearmAxis, framing: Framing::Window };
 
 fn rig() -> Rig {
-    Rig::from_toml(include_str!("../../../fixtures/rigs/desk.toml")).unwrap()
+    Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap()
 }
 
 /// A hand closed by a share of 0 to 1 and turned about the forearm.

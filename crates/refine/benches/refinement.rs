@@ -8,7 +8,7 @@ use phalanx_render::Renderer;
 use std::hint::black_box;
 
 fn refinement(c: &mut Criterion) {
-    let rig = Rig::from_toml(include_str!("../../../fixtures/rigs/desk.toml")).unwrap();
+    let rig = Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap();
     let (hand, rest) = (HandShape::adult(), rig.volume.rest_frame());
     let mut truth = Pose::REST;
     let mut deviations = [0.0; Dof::COUNT];

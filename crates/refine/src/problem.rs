@@ -389,7 +389,7 @@ mod tests {
     use crate::touching;
 
     fn rig() -> Rig {
-        Rig::from_toml(include_str!("../../../fixtures/rigs/desk.toml")).unwrap()
+        Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap()
     }
 
     fn seen(camera: &Camera, hand: &HandShape, pose: &Pose, rest: &DAffine3) -> Evidence {

@@ -11,7 +11,7 @@ use phalanx_render::Renderer;
 use proptest::prelude::*;
 
 fn rig() -> Rig {
-    Rig::from_toml(include_str!("../../../fixtures/rigs/desk.toml")).unwrap()
+    Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap()
 }
 
 fn see(rig: &Rig, hand: &HandShape, pose: &Pose, rest: &DAffine3) -> Vec<Evidence> {

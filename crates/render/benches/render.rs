@@ -19,7 +19,7 @@ fn renderers(rig: &Rig, distortion: Distortion) -> Vec<Renderer> {
 }
 
 fn bench(c: &mut Criterion) {
-    let rig = Rig::from_toml(include_str!("../../../fixtures/rigs/desk.toml")).expect("valid");
+    let rig = Rig::from_toml(include_str!("../fixtures/desk.toml")).expect("valid");
     let hand = hand(&rig);
     let barrel = Distortion { k1: -0.2, ..Distortion::NONE };
     for (lens, distortion) in [("pinhole", Distortion::NONE), ("lens", barrel)] {

@@ -42,6 +42,19 @@ pub enum Stop {
 /// Two corrections to the printed text of 2006: R with ν/a_scale appended to F would penalise
 /// ν²/a², where the text (and this crate) has ν‖a‖²/a_scale²; and that bridge has the gradient of
 /// 2ν log‖a‖, not of ν log‖a‖.
+///
+/// ```
+/// use phalanx_rvm::{Bridges, Kernel, Stop, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(20, 100, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
+/// let y = Mat::from_fn(2, 100, |j, t| x[(4, t)] - 2.0 * x[(11 + j, t)]);
+/// let bridges = Bridges { kernel: Kernel::Linear, stop: Stop::Count(3), ..Bridges::default() };
+/// let model = bridges.fit(x.as_ref(), y.as_ref())?.model;
+/// assert_eq!(model.selected_features(), [4, 11, 12], "shared by both targets");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bridges {

@@ -13,6 +13,18 @@ use crate::{Columns, Error, Fit, Kernel, Report, Result, Width};
 /// features, then bridges over Gaussian columns on those features select samples.
 ///
 /// The traces are the two stages'. If no feature survives, the model is the mean.
+///
+/// ```
+/// use phalanx_rvm::{Cascade, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(30, 200, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
+/// let y = Mat::from_fn(1, 200, |_, t| (3.0 * x[(4, t)]).sin() + x[(9, t)]);
+/// let model = Cascade::default().fit(x.as_ref(), y.as_ref())?.model;
+/// assert!(model.selected_features().len() < 30 && model.kept_samples().len() < 200);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cascade {

@@ -21,6 +21,19 @@ const DEPENDENT: f64 = 1e-10;
 /// holds the error after each column and after each sweep of replacements. Fewer than `count`
 /// columns are chosen, and the fit said not to have converged, if the others depend on those
 /// chosen or the targets are already met.
+///
+/// ```
+/// use phalanx_rvm::{ForwardSelection, Kernel, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(20, 100, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
+/// let y = Mat::from_fn(2, 100, |j, t| x[(4, t)] - 2.0 * x[(11 + j, t)]);
+/// let selection = ForwardSelection { kernel: Kernel::Linear, count: 3, ..Default::default() };
+/// let model = selection.fit(x.as_ref(), y.as_ref())?.model;
+/// assert_eq!(model.selected_features(), [4, 11, 12]);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ForwardSelection {

@@ -18,6 +18,24 @@ use crate::{Error, Model, Result, Scratch, Standardiser, check};
 /// in units of the noise's variance. The deviation grows from the plain one to that of the target.
 /// The mean stays the plain one. For this all training inputs are kept, and a prediction costs as
 /// much as with Gaussians on all of them.
+///
+/// ```
+/// use phalanx_rvm::{Healed, Tipping, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(1, 60, |_, t| t as f64 / 10.0); // from 0 to 6
+/// let y = Mat::from_fn(1, 60, |_, t| x[(0, t)].sin() + 0.1 * (9.0 * t as f64).sin());
+/// let model = Tipping::default().fit(x.as_ref(), y.as_ref())?.model;
+/// let healed = Healed::new(model, x.as_ref(), y.as_ref())?;
+///
+/// let asked = Mat::from_fn(1, 2, |_, t| [3.0, 30.0][t]); // among the samples, and far from them
+/// let (_, plain) = healed.model().predict_with_std(asked.as_ref())?;
+/// let (_, std) = healed.predict_with_std(asked.as_ref())?;
+/// assert!(std[(0, 0)] < 0.2 && std[(0, 1)] > 0.5);
+/// assert!(plain[(0, 1)] < 0.2, "what has to be healed");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Healed {
     model: Model,

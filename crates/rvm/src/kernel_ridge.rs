@@ -29,6 +29,20 @@ pub enum Lambda {
 /// small to be solved for); the report's penalty is the λ taken.
 ///
 /// Time and memory grow with the cube and the square of the number of samples.
+///
+/// ```
+/// use phalanx_rvm::{KernelRidge, Lambda, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(1, 50, |_, t| t as f64 / 8.0);
+/// let y = Mat::from_fn(1, 50, |_, t| x[(0, t)].cos());
+/// let lambda = Lambda::LeaveOneOut(vec![1e-6, 1e-3, 1.0]);
+/// let fit = KernelRidge { lambda, ..KernelRidge::default() }.fit(x.as_ref(), y.as_ref())?;
+/// assert_eq!(fit.report.penalty, Some(1e-6), "there is no noise to smooth away");
+/// assert_eq!(fit.model.kept_samples().len(), 50);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct KernelRidge {

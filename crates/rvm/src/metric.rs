@@ -25,6 +25,28 @@ use crate::{
 /// gives the distance (a − b)ᵀM(a − b). In further rounds the group's own regression, in that
 /// distance, gives the next. Of M the strongest eigenvectors are kept: a group reads few numbers,
 /// which is what makes predictions fast.
+///
+/// ```
+/// use phalanx_rvm::{Block, GradientMetric, Nystrom, Projected, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(6, 400, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
+/// let y = Mat::from_fn(1, 400, |_, t| (4.0 * (x[(1, t)] + x[(2, t)])).sin());
+/// let nystrom = Nystrom::default();
+/// let learning =
+///     GradientMetric { regression: nystrom.clone(), rounds: 2, centres: 100, gradients: 400, rank: 1 };
+/// let blocks = [Block { inputs: 6, components: 6 }];
+/// let metric = learning.learn(x.as_ref(), y.as_ref(), &blocks, &[vec![0]])?;
+///
+/// // Of six inputs one number is left, and from it the target follows.
+/// let z = metric.projection.apply(x.as_ref())?;
+/// assert_eq!(z.nrows(), 1);
+/// let model = nystrom.fit(z.as_ref(), y.as_ref(), 50)?.model;
+/// let all = Projected::from_parts(metric, vec![model])?;
+/// assert_eq!((all.inputs(), all.outputs()), (6, 1));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GradientMetric {

@@ -20,6 +20,20 @@ use crate::{Columns, Error, Fit, Kernel, Progress, Report, Result, Width};
 /// targets share, or gives every target the noise at which the evidence is greatest. The trace holds
 /// the log evidence of all standardised targets that vary, as `Tipping`'s do. An unpenalised bias
 /// stands beside the columns.
+///
+/// ```
+/// use phalanx_rvm::{MultivariateRvm, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(1, 80, |_, t| t as f64 / 20.0);
+/// let y = Mat::from_fn(3, 80, |j, t| (x[(0, t)] * (j + 1) as f64).sin());
+/// let rvm = MultivariateRvm { most: Some(12), ..MultivariateRvm::default() };
+/// let model = rvm.fit(x.as_ref(), y.as_ref())?.model;
+/// assert!(model.kept_samples().len() <= 12, "shared by the three targets");
+/// assert_eq!(model.weights().shape(), (3, model.kept_samples().len()));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MultivariateRvm {

@@ -56,6 +56,19 @@ pub enum Deviation {
 /// models with weights.
 ///
 /// Time grows with n·p² for the sums and p³ for each λ; memory with p².
+///
+/// ```
+/// use phalanx_rvm::{Nystrom, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(1, 500, |_, t| t as f64 / 60.0);
+/// let y = Mat::from_fn(1, 500, |_, t| x[(0, t)].sin());
+/// let model = Nystrom::default().fit(x.as_ref(), y.as_ref(), 40)?.model; // Gaussians on 40 samples
+/// let (mean, std) = model.predict_with_std(x.as_ref())?;
+/// assert!((0..500).all(|t| (mean[(0, t)] - y[(0, t)]).abs() < 0.01 && std[(0, t)] > 0.0));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Nystrom {

@@ -9,6 +9,17 @@ use crate::{Error, Result, check};
 ///
 /// P is kept in single precision: it is the largest part of a regressor that has one, a prediction
 /// reads all of it, and descriptors are not known to seven digits.
+///
+/// ```
+/// use phalanx_rvm::{Projection, ProjectionParts, faer::mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let parts = ProjectionParts { inputs: 2, matrix: vec![1.0, -1.0], offset: vec![0.5] };
+/// let difference = Projection::from_parts(parts)?;
+/// assert_eq!(difference.apply(mat![[3.0], [1.0]].as_ref())?, mat![[2.5]]);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "ProjectionParts", into = "ProjectionParts"))]

@@ -16,6 +16,20 @@ use crate::{Columns, Fit, Kernel, Report, Result, Trace, check, linalg};
 /// side has it. Sums run over all samples, so λ weighs against their number.
 ///
 /// The trace holds the objective.
+///
+/// ```
+/// use phalanx_rvm::{Kernel, Ridge, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(2, 30, |i, t| (t * (i + 1)) as f64 % 7.0);
+/// let y = Mat::from_fn(1, 30, |_, t| 3.0 * x[(0, t)] - x[(1, t)] + 5.0);
+/// let ridge = Ridge { kernel: Kernel::Linear, lambda: 1e-6 };
+/// let model = ridge.fit(x.as_ref(), y.as_ref())?.model;
+/// let predicted = model.predict(x.as_ref())?;
+/// assert!((predicted[(0, 3)] - y[(0, 3)]).abs() < 1e-4);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ridge {

@@ -16,6 +16,20 @@ const ABSOLUTE_FLOOR: f64 = 1e-150;
 /// equivariant under scaling of inputs, so both inputs and targets are standardised first. The
 /// variance divides by the number of samples. A row that does not vary has scale 0: it becomes 0,
 /// and 0 becomes its constant again, exactly.
+///
+/// ```
+/// use phalanx_rvm::{Standardiser, faer::mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = mat![[1.0, 3.0], [5.0, 5.0]]; // the second row does not vary
+/// let standardiser = Standardiser::fit(x.as_ref())?;
+/// assert_eq!(standardiser.scale(), [1.0, 0.0]);
+/// let z = standardiser.apply(x.as_ref())?;
+/// assert_eq!(z, mat![[-1.0, 1.0], [0.0, 0.0]]);
+/// assert_eq!(standardiser.invert(z.as_ref())?, x);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Standardiser {
     mean: Vec<f64>,

@@ -20,6 +20,19 @@ use crate::{Fit, Kernel, Model, Progress, Report, Result, Trace, Width};
 /// unpenalised bias stands beside the columns. The traces, one per target, hold the log evidence in
 /// nats of the standardised target, after each step of the first climb and after each restart that
 /// found more; it falls only where a column goes that is not worth its price.
+///
+/// ```
+/// use phalanx_rvm::{Tipping, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(1, 100, |_, t| t as f64 / 10.0);
+/// let y = Mat::from_fn(1, 100, |_, t| x[(0, t)].sin());
+/// let fit = Tipping::default().fit(x.as_ref(), y.as_ref())?;
+/// assert!(fit.report.traces[0].converged);
+/// assert!(fit.model.kept_samples().len() < 20, "of 100");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tipping {

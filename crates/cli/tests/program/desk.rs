@@ -16,7 +16,7 @@ use tempfile::TempDir;
 pub(crate) const CAMERAS: [&str; 2] = ["side", "top"];
 
 fn rig() -> Rig {
-    let desk = Rig::from_toml(include_str!("../../../../fixtures/rigs/desk.toml"));
+    let desk = Rig::from_toml(include_str!("../../fixtures/desk.toml"));
     desk.and_then(|desk| desk.select(&CAMERAS)).unwrap()
 }
 

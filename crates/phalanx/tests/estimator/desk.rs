@@ -45,7 +45,7 @@ pub(crate) fn unseen() -> Vec<Pose> {
 }
 
 pub(crate) fn rig() -> Rig {
-    Rig::from_toml(include_str!("../../../../fixtures/rigs/desk.toml")).unwrap()
+    Rig::from_toml(include_str!("../../fixtures/desk.toml")).unwrap()
 }
 
 pub(crate) fn top() -> Rig {

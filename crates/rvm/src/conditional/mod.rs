@@ -19,6 +19,22 @@ use crate::{Error, Result, check};
 ///
 /// It is summed up by a few [`Hypothesis`]es: the prediction itself, and beside it principal points
 /// (Flury 1990), placed so that the truth is as near as possible to the nearest of them.
+///
+/// ```
+/// use phalanx_rvm::{ConditionalDensity, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// // A regression that always says 0 where the truth is near −1 or near 1.
+/// let predictions = Mat::zeros(1, 40);
+/// let truth = Mat::from_fn(1, 40, |_, t| if t % 4 == 0 { -1.0 } else { 1.0 } + 0.001 * t as f64);
+/// let density = ConditionalDensity::fit(predictions.as_ref(), truth.as_ref(), &[1.0], 40)?;
+/// let answers = density.hypotheses(&[0.0], 3)?;
+/// assert_eq!(answers[0].mean, [0.0], "the prediction comes first");
+/// assert!((answers[1].mean[0] - 1.0).abs() < 0.1 && (answers[2].mean[0] + 1.0).abs() < 0.1);
+/// assert!(answers[1].weight > 0.7);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(

@@ -41,6 +41,25 @@ pub enum Tie {
 /// that the evidence finds irrelevant are no longer read
 /// ([`Model::selected_features`](crate::Model::selected_features)); what is left of the widths
 /// [`Model::length_scales`](crate::Model::length_scales) tells.
+///
+/// ```
+/// use phalanx_rvm::{LearntWidths, Tie, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// // Of three inputs the first matters much, the second little, and the third not at all.
+/// let x = Mat::from_fn(3, 150, |i, t| ((t * (7 + 6 * i)) as f64 * 0.618).fract() * 4.0);
+/// let y = Mat::from_fn(1, 150, |_, t| (2.0 * x[(0, t)]).sin() + 0.3 * x[(1, t)]);
+///
+/// let each = LearntWidths::default().fit(x.as_ref(), y.as_ref())?; // `Tie::None`
+/// let scales = each.model.length_scales().expect("Gaussians have them");
+/// assert!(scales[0] < scales[1]);
+///
+/// let one = LearntWidths { tie: Tie::All, ..LearntWidths::default() };
+/// let one = one.fit(x.as_ref(), y.as_ref())?;
+/// assert!(each.report.traces[0].objective.last() > one.report.traces[0].objective.last());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LearntWidths {

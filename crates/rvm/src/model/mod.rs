@@ -16,6 +16,26 @@ use crate::Result;
 /// Every fitter of this crate makes one: linear or Gaussian basis columns, weights, the scaling of
 /// inputs and targets, and the posterior. If every column was pruned it predicts the mean, with
 /// the targets' own spread as its standard deviation.
+///
+/// ```
+/// use phalanx_rvm::{Model, Scratch, Tipping, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(2, 60, |i, t| ((t * (3 + i)) as f64 * 0.618).fract());
+/// let y = Mat::from_fn(1, 60, |_, t| (x[(0, t)] - x[(1, t)]).exp());
+/// let model = Tipping::default().fit(x.as_ref(), y.as_ref())?.model;
+///
+/// // One sample, without allocating anything from the second on.
+/// let mut scratch = Scratch::default();
+/// let (mut mean, mut std) = ([0.0], [0.0]);
+/// model.predict_into(&[0.2, 0.7], &mut scratch, &mut mean, &mut std)?;
+/// assert!((mean[0] - (-0.5_f64).exp()).abs() < 0.1 && std[0] > 0.0);
+///
+/// // Taken apart into plain vectors, and put together again.
+/// assert_eq!(Model::from_parts(model.clone().into_parts())?, model);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "ModelParts", into = "ModelParts"))]

@@ -3,7 +3,7 @@
 
 use glam::DAffine3;
 use image::GrayImage;
-use phalanx::{Error, Estimator, Part};
+use phalanx::{Error, Estimator, Part, decode_picture};
 use phalanx_camera::{Rig, cameras_from_opencv_json};
 use phalanx_codebook::{AnyCoding, Coding, Scratch};
 use phalanx_hand::{HandShape, Pose, PoseTable};
@@ -14,7 +14,7 @@ pub(crate) type Target = (&'static str, fn(&[u8]));
 
 /// All of them.
 #[allow(dead_code, reason = "each fuzz target uses one of them")]
-pub(crate) const TARGETS: [Target; 10] = [
+pub(crate) const TARGETS: [Target; 11] = [
     ("model", model),
     ("part", part),
     ("rig", rig),
@@ -25,6 +25,7 @@ pub(crate) const TARGETS: [Target; 10] = [
     ("wrist_model", wrist_model),
     ("coding", coding),
     ("mask", mask),
+    ("picture", picture),
 ];
 
 /// A model's payload, under a header that vouches for it, and as a whole file.
@@ -119,4 +120,9 @@ pub(crate) fn mask(data: &[u8]) {
     if let Ok(cleaned) = clean(&mask, &Cleanup::default()) {
         let _ = Silhouette::from_mask(&cleaned);
     }
+}
+
+/// A picture's file, decoded in less memory than fuzzing allows.
+pub(crate) fn picture(data: &[u8]) {
+    let _ = decode_picture(data, 32 << 20);
 }
