@@ -104,7 +104,7 @@ enum Command {
     Pictures(pictures::Arguments),
     /// Check the crates as those get them who depend on one alone: licences, features, packages.
     CheckCrates(check_crates::Arguments),
-    /// Feed damaged files to everything that reads files, as docs/fuzzing.md tells.
+    /// Feed damaged files to everything that reads files.
     Fuzz(fuzz::Arguments),
     /// Measure our crates beside their best peers, and write docs/peers.md.
     BenchPeers(bench_peers::Arguments),

@@ -10,11 +10,12 @@ use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 use phalanx_refine::Refinement;
 use phalanx_render::Renderer;
-use phalanx_rvm::{Cascade, KernelRidge, Stop};
+use phalanx_rvm::{Cascade, Stop};
 use rayon::prelude::*;
 
 use super::{Look, Seen, sheet};
 use crate::files;
+use crate::held_out::method::nystrom;
 use crate::mosaic::mosaic;
 use crate::sets;
 
@@ -40,7 +41,7 @@ pub(super) fn write(
     looks: &[&Look],
     progress: &dyn Progress,
 ) -> Result<String> {
-    let all = Regressor::KernelRidge(KernelRidge::default());
+    let all = nystrom();
     let some = Regressor::Cascade(Cascade {
         features: Stop::Count(FEATURES),
         samples: Stop::Count(SAMPLES),

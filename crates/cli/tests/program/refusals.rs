@@ -65,9 +65,9 @@ fn missing_files() {
 #[test]
 fn files_that_are_no_pictures() {
     let desk = Desk::new();
-    desk.refuses_file(b"", &["end of file"]);
-    desk.refuses_file(b"side,top\n1,2\n", &["Invalid PNG signature"]);
-    desk.refuses_file(&desk.read("model"), &["Invalid PNG signature"]);
+    desk.refuses_file(b"", &["format could not be determined"]);
+    desk.refuses_file(b"side,top\n1,2\n", &["format could not be determined"]);
+    desk.refuses_file(&desk.read("model"), &["format could not be determined"]);
     desk.refuses(&["side.png", "model"], &["phalanx: model: ", "format could not be determined"]);
 }
 
