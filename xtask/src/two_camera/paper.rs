@@ -1,5 +1,4 @@
-//! The paper's Figs. 10 and 11 on these photographs: one view beside two, with all samples and
-//! features and with the paper's counts of them, and refined.
+//! The paper's Fig. 10 on these photographs: one view beside two, estimated and refined.
 
 use std::path::Path;
 
@@ -10,7 +9,6 @@ use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 use phalanx_refine::Refinement;
 use phalanx_render::Renderer;
-use phalanx_rvm::{Cascade, Stop};
 use rayon::prelude::*;
 
 use super::{Look, Seen, sheet};
@@ -21,10 +19,6 @@ use crate::sets;
 
 /// Frames that are shown, evenly spaced.
 const SHOWN: usize = 5;
-/// The features and the samples that the paper's Fig. 11 keeps.
-const FEATURES: usize = 32;
-const SAMPLES: usize = 38;
-
 /// Estimates of all frames through some of the cameras.
 struct Estimates {
     what: String,
@@ -32,7 +26,7 @@ struct Estimates {
     refined: Vec<Pose>,
 }
 
-/// Draws the figures, and says how well each estimate covers what was seen.
+/// Draws the figure, and says how well each estimate covers what was seen.
 pub(super) fn write(
     folder: &Path,
     rig: &Rig,
@@ -42,30 +36,18 @@ pub(super) fn write(
     progress: &dyn Progress,
 ) -> Result<String> {
     let all = nystrom();
-    let some = Regressor::Cascade(Cascade {
-        features: Stop::Count(FEATURES),
-        samples: Stop::Count(SAMPLES),
-        ..Cascade::default()
-    });
-    let counts = format!("{FEATURES} features and {SAMPLES} samples");
     let mut report =
         String::from("overlap with each view, on average over the frames: estimated, refined\n");
-    for (figure, what, regressor) in
-        [("fig-10", "all features and samples", all), ("fig-11", counts.as_str(), some)]
-    {
-        let mut rows = Vec::new();
-        for views in 1..=rig.cameras.len() {
-            let learning = Learning { rig, hand, samples, views, regressor: regressor.clone() };
-            let what = format!("{what}, views: {views}");
-            rows.push(learning.estimates(what, looks, progress)?);
-        }
-        for row in &rows {
-            report += &row.line(rig, hand, looks)?;
-        }
-        draw(&folder.join(format!("{figure}.png")), rig, hand, looks, &rows, |row| &row.estimated)?;
-        let refined = folder.join(format!("{figure}-refined.png"));
-        draw(&refined, rig, hand, looks, &rows, |row| &row.refined)?;
+    let mut rows = Vec::new();
+    for views in 1..=rig.cameras.len() {
+        let learning = Learning { rig, hand, samples, views, regressor: all.clone() };
+        rows.push(learning.estimates(format!("views: {views}"), looks, progress)?);
     }
+    for row in &rows {
+        report += &row.line(rig, hand, looks)?;
+    }
+    draw(&folder.join("fig-10.png"), rig, hand, looks, &rows, |row| &row.estimated)?;
+    draw(&folder.join("fig-10-refined.png"), rig, hand, looks, &rows, |row| &row.refined)?;
     Ok(report)
 }
 
