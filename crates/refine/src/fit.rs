@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 
-use crate::Result;
 use crate::doubt::Correction;
 use crate::problem::{Frame, Known, Measure, Moment, Problem, Shared};
 use crate::system::{self, FrameSystem, Step};
 use crate::view::View;
+use crate::{Error, Result};
 
 /// Where a fit is.
 #[derive(Debug, Clone)]
@@ -67,14 +67,18 @@ pub(crate) fn descend(
             continue;
         };
         let candidate = moved(problem, &state, &step);
-        let next = look_at(problem, &candidate, measure, views)?;
-        if next.energy < look.energy {
-            converged = look.energy - next.energy < stop.gain * look.energy;
-            (state, look) = (candidate, next);
-            damping *= 0.3;
-        } else {
-            converged = damping > 1e4;
-            damping *= 10.0;
+        match look_at(problem, &candidate, measure, views) {
+            Ok(next) if next.energy < look.energy => {
+                converged = look.energy - next.energy < stop.gain * look.energy;
+                (state, look) = (candidate, next);
+                damping *= 0.3;
+            }
+            // A step too long: also one that led to where a camera cannot draw the hand.
+            Ok(_) | Err(Error::Render { .. }) => {
+                converged = damping > 1e4;
+                damping *= 10.0;
+            }
+            Err(error) => return Err(error),
         }
     }
     let Look { energy, frames, .. } = look;

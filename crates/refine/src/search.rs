@@ -70,12 +70,13 @@ impl Search<'_> {
         let mut pose = *start;
         for digit in Digit::ALL {
             let mut background = self.background(&pose, &[digit])?;
+            let standing = self.standing(&pose, &mut background)?;
             let mut tried = Vec::with_capacity(PLACES * PLACES);
-            for ([i, j], posture) in self.postures(digit, &pose) {
-                let cost = self.cost(&posture, &mut background)?;
-                tried.push(Costed { cost, pose: posture, places: [i, j, 0, 0] });
+            for ([i, j], pose) in self.postures(digit, &pose) {
+                let cost = self.cost_below(standing.cost + SLOPE, &pose, &mut background)?;
+                tried.extend(cost.map(|cost| Costed { cost, pose, places: [i, j, 0, 0] }));
             }
-            pose = self.lowest(&pose, tried, &mut background)?;
+            pose = self.lowest(standing, tried, &mut background)?;
         }
         Ok(pose)
     }
@@ -86,6 +87,8 @@ impl Search<'_> {
         let mut pose = *start;
         for pair in Digit::FINGERS.windows(2) {
             let mut background = self.background(&pose, pair)?;
+            let standing = self.standing(&pose, &mut background)?;
+            let limit = standing.cost + SLOPE;
             let (ones, others) = (self.drawn(pair[0], &pose)?, self.drawn(pair[1], &pose)?);
             let mut tried = Vec::with_capacity(ones.len() * others.len());
             for one in &ones {
@@ -93,16 +96,19 @@ impl Search<'_> {
                     let mut both = one.pose;
                     pair[1].dofs().into_iter().for_each(|dof| both[dof] = other.pose[dof]);
                     let layers = background.drawn.iter().zip(&one.images).zip(&other.images);
-                    let differing: u32 = layers
-                        .zip(self.evidence)
-                        .map(|(((rest, one), other), seen)| difference([rest, one, other], seen))
-                        .sum();
-                    let ([i, j], [k, l]) = (one.places, other.places);
-                    let cost = PIXEL * f64::from(differing) + self.prior.energy(&both);
-                    tried.push(Costed { cost, pose: both, places: [i, j, k, l] });
+                    let mut cost = self.prior.energy(&both);
+                    for (((rest, one), other), seen) in layers.zip(self.evidence) {
+                        if cost < limit {
+                            cost += PIXEL * f64::from(difference([rest, one, other], seen));
+                        }
+                    }
+                    if cost < limit {
+                        let ([i, j], [k, l]) = (one.places, other.places);
+                        tried.push(Costed { cost, pose: both, places: [i, j, k, l] });
+                    }
                 }
             }
-            pose = self.lowest(&pose, tried, &mut background)?;
+            pose = self.lowest(standing, tried, &mut background)?;
         }
         Ok(pose)
     }
@@ -156,13 +162,12 @@ impl Search<'_> {
     /// The best of a pose and what others lead to that differ from it in the background's digits.
     fn lowest(
         &mut self,
-        pose: &Pose,
+        standing: Costed,
         others: Vec<Costed>,
         background: &mut Background,
     ) -> Result<Pose> {
-        let cost = self.cost(pose, background)?;
-        let mut best = Costed { cost, pose: *pose, places: [0; 4] };
-        for other in valleys(others, cost + SLOPE) {
+        let mut best = standing;
+        for other in valleys(others) {
             let found = self.follow(&other, background)?;
             if found.cost < best.cost {
                 best = found;
@@ -185,8 +190,7 @@ impl Search<'_> {
                             let (low, high) = dof.range();
                             candidate[dof] = (candidate[dof] + step).clamp(low, high);
                         }
-                        let cost = self.cost(&candidate, background)?;
-                        if cost < best.cost {
+                        if let Some(cost) = self.cost_below(best.cost, &candidate, background)? {
                             best = Costed { cost, pose: candidate, ..best };
                         }
                     }
@@ -206,15 +210,31 @@ impl Search<'_> {
         Ok(Background { digits: digits.to_vec(), drawn, scratch: GrayImage::default() })
     }
 
-    fn cost(&mut self, pose: &Pose, background: &mut Background) -> Result<f64> {
+    /// The pose that the search begins at.
+    fn standing(&mut self, pose: &Pose, background: &mut Background) -> Result<Costed> {
+        let cost = self.cost_below(f64::INFINITY, pose, background)?.unwrap_or(f64::INFINITY);
+        Ok(Costed { cost, pose: *pose, places: [0; 4] })
+    }
+
+    /// What speaks against a pose; none where that reaches a limit, beyond which nothing is drawn.
+    fn cost_below(
+        &mut self,
+        limit: f64,
+        pose: &Pose,
+        background: &mut Background,
+    ) -> Result<Option<f64>> {
         let posed = self.hand.pose(pose, self.rest);
         let own = solids(&posed, &background.digits, Part::Digits);
-        let mut differing = 0;
+        let mut cost = self.prior.energy(pose) + touching::energy(&posed);
         for (v, other) in background.drawn.iter().enumerate() {
+            if cost >= limit {
+                break;
+            }
             self.draw(v, &own, &mut background.scratch)?;
-            differing += difference([other, other, &background.scratch], &self.evidence[v]);
+            let differing = difference([other, other, &background.scratch], &self.evidence[v]);
+            cost += PIXEL * f64::from(differing);
         }
-        Ok(PIXEL * f64::from(differing) + self.prior.energy(pose) + touching::energy(&posed))
+        Ok((cost < limit).then_some(cost))
     }
 
     fn draw(&mut self, view: usize, solids: &[Primitive], image: &mut GrayImage) -> Result<()> {
@@ -255,9 +275,8 @@ fn difference([a, b, c]: [&GrayImage; 3], seen: &Evidence) -> u32 {
     differing
 }
 
-/// The lowest of postures on a grid, none beside another and none above a limit.
-fn valleys(mut tried: Vec<Costed>, limit: f64) -> Vec<Costed> {
-    tried.retain(|costed| costed.cost < limit);
+/// The lowest of postures on a grid, none beside another.
+fn valleys(mut tried: Vec<Costed>) -> Vec<Costed> {
     tried.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let mut lowest: Vec<Costed> = Vec::with_capacity(VALLEYS);
     for costed in tried {

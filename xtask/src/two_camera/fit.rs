@@ -1,11 +1,11 @@
 //! Poses of the real hand: estimated, placed, refined, and the hand calibrated.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use phalanx::{
     Estimate, Estimator, Framing, Preset, Progress, Refiner, Shard, Training, Workspace,
 };
 use phalanx_camera::Rig;
-use phalanx_hand::{Digit, HandShape, Pose};
+use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_refine::{
     Calibration, CalibrationFrame, Evidence, HandDoubt, PosePrior, Refined, Refinement,
 };
@@ -21,6 +21,16 @@ const CALIBRATED_ON: usize = 20;
 /// takes up that the calibration's unit is known roughly only.
 const HAND: HandDoubt = HandDoubt { size: 0.2, each: 0.06 };
 
+/// Standard deviation of a border's place in photographs, px: more than in drawn pictures, and over
+/// whole stretches of the border, so that what is seen outweighs what hands do less.
+const NOISE_PX: f64 = 2.0;
+
+/// How far an angle moves from one frame to the next, standard deviation.
+const MOTION_DEG: f64 = 10.0;
+
+/// How often what is known of a frame is handed on through all others.
+const SWEEPS: usize = 2;
+
 /// An estimator for the rig, and what its estimates are refined with.
 pub(super) struct Learnt {
     pub(super) estimator: Estimator,
@@ -28,6 +38,7 @@ pub(super) struct Learnt {
 }
 
 /// A frame ready for refinement.
+#[derive(Clone)]
 pub(super) struct Start {
     pub(super) estimate: Estimate,
     evidence: Vec<Evidence>,
@@ -47,7 +58,8 @@ pub(super) fn learn(
     if part.left_out() > 0 {
         eprintln!("{} of {samples} samples could not be described", part.left_out());
     }
-    let refiner = Refiner::new(rig, hand, &set.poses, Refinement::default())?;
+    let refinement = Refinement { noise: NOISE_PX, ..Refinement::default() };
+    let refiner = Refiner::new(rig, hand, &set.poses, refinement)?;
     Ok(Learnt { estimator: part.finish()?, refiner })
 }
 
@@ -59,7 +71,9 @@ impl Learnt {
         let pairs = seen.windows.iter().zip(&seen.silhouettes);
         let evidence = pairs.map(|(window, silhouette)| window.evidence(silhouette));
         let evidence = evidence.collect::<Result<_, _>>()?;
-        let prior = self.refiner.prior(&estimate.pose, &estimate.std)?;
+        // How hands are before a camera, and no more: starts of every posture are compared by it.
+        let open = estimate.std.map(|std| if std > 0.0 { f64::INFINITY } else { 0.0 });
+        let prior = self.refiner.prior(&estimate.pose, &open)?;
         Ok(Start { estimate, evidence, prior })
     }
 
@@ -67,8 +81,8 @@ impl Learnt {
     pub(super) fn calibrate(&self, starts: &[Start], refined: &[Refined]) -> Result<HandShape> {
         let step = starts.len().div_ceil(CALIBRATED_ON).max(1);
         let frame = |(start, refined): (&Start, &Refined)| -> Result<CalibrationFrame> {
-            let prior = start.prior.about(refined.pose)?;
-            Ok(CalibrationFrame { evidence: start.evidence.clone(), start: refined.pose, prior })
+            let Start { evidence, prior, .. } = start.clone();
+            Ok(CalibrationFrame { evidence, start: refined.pose, prior })
         };
         let frames: Vec<CalibrationFrame> =
             starts.iter().zip(refined).step_by(step).map(frame).collect::<Result<_>>()?;
@@ -76,8 +90,8 @@ impl Learnt {
         Ok(calibration.run(self.refiner.hand(), self.refiner.rest(), &frames)?.hand)
     }
 
-    /// All frames refined with a hand: each from some poses, the best of which is kept, then from the
-    /// frame before it and from the frame after.
+    /// All frames refined with a hand: each alone from some poses, the best of which is kept, then each
+    /// between the frame before it and the frame after.
     pub(super) fn refine(
         &self,
         hand: &HandShape,
@@ -85,30 +99,56 @@ impl Learnt {
         poses: impl Fn(usize) -> Vec<Pose> + Sync,
     ) -> Result<Vec<Refined>> {
         let alone = |k: usize, start: &Start| -> Result<Refined> {
-            let mean = self.from(hand, start, *start.prior.mean())?;
-            poses(k)
-                .into_iter()
-                .try_fold(mean, |best, pose| Ok(better(best, self.from(hand, start, pose)?)))
+            let mean = self.from(hand, start, start.estimate.pose, &start.prior)?;
+            poses(k).into_iter().try_fold(mean, |best, pose| {
+                Ok(better(best, self.from(hand, start, pose, &start.prior)?))
+            })
         };
         let mut refined: Vec<Refined> = starts
             .par_iter()
             .enumerate()
             .map(|(k, start)| alone(k, start))
             .collect::<Result<_>>()?;
-        let forwards = (1..starts.len()).map(|k| (k - 1, k));
-        let backwards = (1..starts.len()).rev().map(|k| (k, k - 1));
-        for (known, next) in forwards.chain(backwards) {
-            let followed = self.from(hand, &starts[next], refined[known].pose)?;
-            refined[next] = better(refined[next].clone(), followed);
+        for _ in 0..SWEEPS {
+            for k in (0..starts.len()).chain((0..starts.len()).rev()) {
+                refined[k] = self.between(hand, &starts[k], k, &refined)?;
+            }
         }
         Ok(refined)
     }
 
-    /// A frame refined from a pose, which takes the place of the estimate.
-    fn from(&self, hand: &HandShape, start: &Start, pose: Pose) -> Result<Refined> {
-        let prior = start.prior.about(pose)?;
+    /// A frame refined once more beside its neighbours, which the hand is not far from.
+    fn between(
+        &self,
+        hand: &HandShape,
+        start: &Start,
+        frame: usize,
+        refined: &[Refined],
+    ) -> Result<Refined> {
+        let moves = Dof::ALL.map(|dof| match dof.is_internal() {
+            true => MOTION_DEG.to_radians(),
+            false => f64::INFINITY,
+        });
+        let mut prior = start.prior.clone();
+        let around = frame.saturating_sub(1)..refined.len().min(frame + 2);
+        for neighbour in around.clone().filter(|&other| other != frame) {
+            prior = prior.and(&PosePrior::independent(refined[neighbour].pose, &moves)?)?;
+        }
+        let from = |fit: &Refined| self.from(hand, start, fit.pose, &prior);
+        let tried: Vec<Refined> = refined[around].par_iter().map(from).collect::<Result<_>>()?;
+        tried.into_iter().reduce(better).context("a frame is beside itself")
+    }
+
+    /// A frame refined from a pose.
+    fn from(
+        &self,
+        hand: &HandShape,
+        start: &Start,
+        pose: Pose,
+        prior: &PosePrior,
+    ) -> Result<Refined> {
         let rest = self.refiner.rest();
-        Ok(Refinement::default().run(hand, rest, &start.evidence, &pose, &prior)?)
+        Ok(self.refiner.refinement().run(hand, rest, &start.evidence, &pose, prior)?)
     }
 }
 
@@ -128,10 +168,9 @@ pub(super) fn postures(pose: &Pose) -> Vec<Pose> {
     (0..1 << Digit::FINGERS.len()).map(posture).collect()
 }
 
-/// That of two which covers more of what was seen, on average over the views.
+/// The more plausible of two.
 fn better(one: Refined, other: Refined) -> Refined {
-    let sum = |refined: &Refined| refined.overlaps.iter().sum::<f64>();
-    if sum(&other) > sum(&one) { other } else { one }
+    if other.energy < one.energy { other } else { one }
 }
 
 /// How long the hand is from the wrist to the middle finger's tip, mm.

@@ -15,10 +15,12 @@ use super::{Look, Seen, sheet};
 use crate::files;
 use crate::held_out::method::nystrom;
 use crate::mosaic::mosaic;
+use crate::saturation::overlap;
 use crate::sets;
 
 /// Frames that are shown, evenly spaced.
 const SHOWN: usize = 5;
+
 /// Estimates of all frames through some of the cameras.
 struct Estimates {
     what: String,
@@ -125,13 +127,6 @@ impl Estimates {
         let (estimated, refined) = (mean(&self.estimated)?, mean(&self.refined)?);
         Ok(format!("  {}: {estimated}; {refined}\n", self.what))
     }
-}
-
-fn overlap(a: &image::GrayImage, b: &image::GrayImage) -> f64 {
-    let pixels = || a.iter().zip(b.iter()).map(|(a, b)| (*a > 127, *b > 127));
-    let both = pixels().filter(|(a, b)| *a && *b).count();
-    let either = pixels().filter(|(a, b)| *a || *b).count();
-    both as f64 / either.max(1) as f64
 }
 
 /// A row for each number of views: some frames through the windows of all cameras, the hand drawn over.
