@@ -76,7 +76,7 @@ impl Search<'_> {
                 let cost = self.cost_below(standing.cost + SLOPE, &pose, &mut background)?;
                 tried.extend(cost.map(|cost| Costed { cost, pose, places: [i, j, 0, 0] }));
             }
-            pose = self.lowest(standing, tried, &mut background)?;
+            pose = self.lowest(&standing, tried, &mut background)?;
         }
         Ok(pose)
     }
@@ -108,7 +108,7 @@ impl Search<'_> {
                     }
                 }
             }
-            pose = self.lowest(standing, tried, &mut background)?;
+            pose = self.lowest(&standing, tried, &mut background)?;
         }
         Ok(pose)
     }
@@ -162,11 +162,11 @@ impl Search<'_> {
     /// The best of a pose and what others lead to that differ from it in the background's digits.
     fn lowest(
         &mut self,
-        standing: Costed,
+        standing: &Costed,
         others: Vec<Costed>,
         background: &mut Background,
     ) -> Result<Pose> {
-        let mut best = standing;
+        let mut best = *standing;
         for other in valleys(others) {
             let found = self.follow(&other, background)?;
             if found.cost < best.cost {

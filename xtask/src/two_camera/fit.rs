@@ -125,10 +125,9 @@ impl Learnt {
         frame: usize,
         refined: &[Refined],
     ) -> Result<Refined> {
-        let moves = Dof::ALL.map(|dof| match dof.is_internal() {
-            true => MOTION_DEG.to_radians(),
-            false => f64::INFINITY,
-        });
+        let within =
+            |dof: Dof| if dof.is_internal() { MOTION_DEG.to_radians() } else { f64::INFINITY };
+        let moves = Dof::ALL.map(within);
         let mut prior = start.prior.clone();
         let around = frame.saturating_sub(1)..refined.len().min(frame + 2);
         for neighbour in around.clone().filter(|&other| other != frame) {

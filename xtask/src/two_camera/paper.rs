@@ -1,14 +1,20 @@
-//! The paper's Fig. 10 on these photographs: one view beside two, estimated and refined.
+//! The paper's Figs. 10 and 11 on these photographs: one view beside two, estimated and refined, with
+//! all samples and features and with the paper's few.
 
 use std::path::Path;
 
 use anyhow::Result;
+use faer::Mat;
 use image::RgbImage;
-use phalanx::{Estimator, Framing, Progress, Refiner, Regressor, Shard, Training, Workspace};
+use phalanx::{
+    Estimator, EvenlySpaced, Framing, Progress, Refiner, Regressor, Scenes, Shard, Training,
+    Workspace, describe_scenes, targets,
+};
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 use phalanx_refine::Refinement;
 use phalanx_render::Renderer;
+use phalanx_rvm::{Cascade, Stop};
 use rayon::prelude::*;
 
 use super::{Look, Seen, sheet};
@@ -21,9 +27,12 @@ use crate::sets;
 /// Frames that are shown, evenly spaced.
 const SHOWN: usize = 5;
 
+/// What the paper's Fig. 11 selects.
+const FEATURES: usize = 32;
+const SAMPLES: usize = 38;
+
 /// Estimates of all frames through some of the cameras.
 struct Estimates {
-    what: String,
     estimated: Vec<Pose>,
     refined: Vec<Pose>,
 }
@@ -37,54 +46,88 @@ pub(super) fn write(
     looks: &[&Look],
     progress: &dyn Progress,
 ) -> Result<String> {
-    let all = nystrom();
     let mut report =
-        String::from("overlap with each view, on average over the frames: estimated, refined\n");
-    let mut rows = Vec::new();
+        vec!["overlap with each view, on average over the frames: estimated; refined\n".to_owned()];
+    let (mut all, mut few) = (Vec::new(), Vec::new());
     for views in 1..=rig.cameras.len() {
-        let learning = Learning { rig, hand, samples, views, regressor: all.clone() };
-        rows.push(learning.estimates(format!("views: {views}"), looks, progress)?);
+        let learning = Learning { rig: first(rig, views), hand, samples, progress };
+        let estimator = learning.with_all()?;
+        few.push(learning.estimates(&learning.with_few(&estimator)?, looks)?);
+        all.push(learning.estimates(&estimator, looks)?);
     }
-    for row in &rows {
-        report += &row.line(rig, hand, looks)?;
+    let selected = format!("{FEATURES} features and {SAMPLES} samples");
+    for (figure, what, rows) in [(10, "all", &all), (11, selected.as_str(), &few)] {
+        for (row, views) in rows.iter().zip(1..) {
+            report.push(format!("  {what}, views: {views}: {}\n", row.line(rig, hand, looks)?));
+        }
+        let path = |stage: &str| folder.join(format!("fig-{figure}{stage}.png"));
+        draw(&path(""), rig, hand, looks, rows, |row| &row.estimated)?;
+        draw(&path("-refined"), rig, hand, looks, rows, |row| &row.refined)?;
     }
-    draw(&folder.join("fig-10.png"), rig, hand, looks, &rows, |row| &row.estimated)?;
-    draw(&folder.join("fig-10-refined.png"), rig, hand, looks, &rows, |row| &row.refined)?;
-    Ok(report)
+    Ok(report.concat())
 }
 
-/// What is learnt, and through how many of the cameras.
+/// The first cameras of a rig.
+fn first(rig: &Rig, views: usize) -> Rig {
+    Rig { cameras: rig.cameras[..views].to_vec(), ..rig.clone() }
+}
+
+/// What is learnt from.
 struct Learning<'a> {
-    rig: &'a Rig,
+    rig: Rig,
     hand: &'a HandShape,
     samples: usize,
-    views: usize,
-    regressor: Regressor,
+    progress: &'a dyn Progress,
 }
 
 impl Learning<'_> {
-    fn estimates(
-        self,
-        what: String,
-        looks: &[&Look],
-        progress: &dyn Progress,
-    ) -> Result<Estimates> {
-        let Self { rig, hand, samples, views, regressor } = self;
-        let cameras = rig.cameras[..views].to_vec();
-        let rig = Rig { cameras, ..rig.clone() };
-        let training = Training { framing: Framing::Window, regressor, ..Training::default() };
-        let set = sets::loosely_placed(&rig, hand, samples);
-        let estimator = training.shard(&rig, hand, &set, Shard::WHOLE, progress)?.finish()?;
-        let refiner = Refiner::new(&rig, hand, &set.poses, Refinement::default())?;
+    /// With all samples and features.
+    fn with_all(&self) -> Result<Estimator> {
+        let Self { rig, hand, samples, progress } = self;
+        let training =
+            Training { framing: Framing::Window, regressor: nystrom(), ..Training::default() };
+        let set = sets::loosely_placed(rig, hand, *samples);
+        Ok(training.shard(rig, hand, &set, Shard::WHOLE, *progress)?.finish()?)
+    }
+
+    /// With the paper's selection, which needs its samples at once, in the same descriptors.
+    fn with_few(&self, all: &Estimator) -> Result<Estimator> {
+        let Self { rig, hand, samples, progress } = self;
+        let set = sets::loosely_placed(rig, hand, *samples);
+        let scenes = EvenlySpaced::new(&set, Regressor::CANDIDATES);
+        let numbers: Vec<usize> = (0..scenes.count()).collect();
+        let descriptor = all.descriptor();
+        progress.begin("describe for the selection", numbers.len());
+        let described = describe_scenes(rig, &scenes, &numbers, descriptor, *progress)?;
+        let kept: Vec<(Vec<f64>, Pose)> = described
+            .into_iter()
+            .zip(numbers)
+            .filter_map(|(x, number)| Some((x.ok()?, scenes.scene(number).pose)))
+            .collect();
+        let (x, poses): (Vec<Vec<f64>>, Vec<Pose>) = kept.into_iter().unzip();
+        let x = Mat::from_fn(descriptor.dim(), x.len(), |row, column| x[column][row]);
+        let cascade = Cascade {
+            features: Stop::Count(FEATURES),
+            samples: Stop::Count(SAMPLES),
+            ..Cascade::default()
+        };
+        let fit = Regressor::Cascade(cascade).fit(&x, &targets(&poses))?;
+        Ok(Estimator::from_parts(rig.clone(), (*hand).clone(), descriptor.clone(), fit.model)?)
+    }
+
+    /// What an estimator makes of the frames.
+    fn estimates(&self, estimator: &Estimator, looks: &[&Look]) -> Result<Estimates> {
+        let set = sets::loosely_placed(&self.rig, self.hand, self.samples);
+        let refiner = Refiner::new(&self.rig, self.hand, &set.poses, Refinement::default())?;
         let both: Vec<(Pose, Pose)> = looks
             .par_iter()
             .filter_map(|look| look.seen.as_ref().ok())
             .map_init(Workspace::default, |workspace, seen| {
-                estimate(&estimator, &refiner, seen, views, workspace)
+                estimate(estimator, &refiner, seen, workspace)
             })
             .collect::<Result<_>>()?;
         let (estimated, refined) = both.into_iter().unzip();
-        Ok(Estimates { what, estimated, refined })
+        Ok(Estimates { estimated, refined })
     }
 }
 
@@ -93,9 +136,9 @@ fn estimate(
     estimator: &Estimator,
     refiner: &Refiner,
     seen: &Seen,
-    views: usize,
     workspace: &mut Workspace,
 ) -> Result<(Pose, Pose)> {
+    let views = estimator.rig().cameras.len();
     let (windows, silhouettes) = (&seen.windows[..views], &seen.silhouettes[..views]);
     let estimate = estimator.estimate_silhouettes(silhouettes, workspace)?;
     let estimate = estimator.place(estimate, windows)?;
@@ -125,7 +168,7 @@ impl Estimates {
             Ok(shares.collect::<Vec<_>>().join(" "))
         };
         let (estimated, refined) = (mean(&self.estimated)?, mean(&self.refined)?);
-        Ok(format!("  {}: {estimated}; {refined}\n", self.what))
+        Ok(format!("{estimated}; {refined}"))
     }
 }
 
