@@ -43,7 +43,7 @@ impl Evidence {
     /// into.
     ///
     /// # Errors
-    /// As of [`new`](Self::new), the border of what is not known being none.
+    /// As of [`new`](Self::new); also a mask whose border lies nowhere that is known.
     pub fn within(
         camera: &Camera,
         mask: &GrayImage,
