@@ -1,7 +1,12 @@
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Metric, Result, packed::Packed, samples, support::Support};
+use crate::{
+    Error, Metric, Result,
+    packed::{LANES, Lanes, Packed},
+    samples,
+    support::Support,
+};
 
 /// Vectors that stand for those around them.
 ///
@@ -132,9 +137,14 @@ impl Codebook {
     }
 }
 
-/// The index of the first distance that is the smallest one.
+/// The index of the first distance that is the smallest one; the distances are those of whole blocks.
 pub(crate) fn first_equal(distances: &[f32], smallest: f32) -> usize {
-    distances.iter().position(|&d| d == smallest).unwrap_or_default()
+    let (blocks, _) = distances.as_chunks::<LANES>();
+    // A whole block at once, without a branch for each distance.
+    let is_in = |block: &Lanes| block.iter().fold(false, |found, &d| found | (d == smallest));
+    let block = blocks.iter().position(is_in).unwrap_or_default();
+    let lane = blocks[block].iter().position(|&d| d == smallest).unwrap_or_default();
+    block * LANES + lane
 }
 
 /// What is stored of a codebook.
