@@ -125,6 +125,16 @@ impl Codebook {
     /// # Errors
     /// A sample of another length than [`dim`](Self::dim), or that the metric cannot compare: for χ²
     /// one that is not a histogram that sums to 1.
+    ///
+    /// ```
+    /// use phalanx_codebook::{Codebook, Metric};
+    ///
+    /// let towns = vec![0.0, 0.0, 10.0, 0.0, 0.0, 10.0];
+    /// let codebook = Codebook::with_metric(Metric::Euclidean, towns, 2, 1.0)?;
+    /// let nearest = codebook.nearest(&[1.0, 7.0])?;
+    /// assert_eq!((nearest.centre, nearest.distance), (2, 10.0));
+    /// # Ok::<(), phalanx_codebook::Error>(())
+    /// ```
     pub fn nearest(&self, sample: &[f32]) -> Result<Nearest> {
         if sample.len() != self.dim {
             return Err(Error::Shape { what: "sample", values: sample.len(), dim: self.dim });
