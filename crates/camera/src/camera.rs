@@ -15,6 +15,20 @@ pub struct Ray {
 }
 
 /// A calibrated camera with a name.
+///
+/// ```
+/// use glam::{DVec2, DVec3};
+/// use phalanx_camera::{Camera, Intrinsics};
+///
+/// let above = DVec3::new(0.0, 700.0, 0.0);
+/// let camera =
+///     Camera::look_at("top", Intrinsics::pinhole(120, 90, 265.0), above, DVec3::ZERO, DVec3::X)?;
+/// assert_eq!(camera.project(DVec3::ZERO), Some(DVec2::new(60.0, 45.0)));
+/// assert_eq!(camera.project(2.0 * above), None); // behind it
+/// let ray = camera.unproject(DVec2::new(60.0, 45.0)).expect("a perfect lens maps all");
+/// assert_eq!((ray.origin, ray.direction), (above, -DVec3::Y));
+/// # Ok::<(), phalanx_camera::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     /// The name; also that of its folder of pictures.

@@ -46,6 +46,17 @@ impl Distortion {
 
     /// The point of the normalised plane that the lens puts at `distorted`, by damped Newton
     /// steps from the middle of the picture; `None` where there is none short of the fold.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use phalanx_camera::Distortion;
+    ///
+    /// let lens = Distortion { k1: -0.2, k2: 0.05, ..Distortion::NONE };
+    /// let point = DVec2::new(0.3, -0.2);
+    /// let bent = lens.distort(point);
+    /// assert!(bent.length() < point.length()); // a barrel
+    /// assert!((lens.undistort(bent).expect("short of the fold") - point).length() < 1e-11);
+    /// ```
     pub fn undistort(&self, distorted: DVec2) -> Option<DVec2> {
         if self.is_none() {
             return distorted.is_finite().then_some(distorted);
@@ -70,6 +81,15 @@ impl Distortion {
 
     /// Whether the lens has not folded over at this point of the normalised plane: the radial
     /// part grows all the way from the middle of the picture to it.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use phalanx_camera::Distortion;
+    ///
+    /// let lens = Distortion { k1: -0.2, ..Distortion::NONE }; // r (1 − 0.2 r²) turns back at r = 1.29
+    /// assert!(lens.is_one_to_one_at(DVec2::new(1.2, 0.0)));
+    /// assert!(!lens.is_one_to_one_at(DVec2::new(1.4, 0.0)));
+    /// ```
     pub fn is_one_to_one_at(&self, point: DVec2) -> bool {
         // d/dr of r (1 + k1 r² + k2 r⁴ + k3 r⁶) is a cubic in s = r²; its least value up to s
         // is at s or at one of its two extrema.

@@ -7,6 +7,17 @@ use crate::{Error, Result};
 
 /// Where a camera stands: x_cam = R x_world + t, with x to the right of the image, y down it
 /// and z along the view.
+///
+/// ```
+/// use glam::{DMat3, DVec3};
+/// use phalanx_camera::Extrinsics;
+///
+/// let half_a_metre_back =
+///     Extrinsics { rotation: DMat3::IDENTITY, translation: DVec3::new(0.0, 0.0, 500.0) };
+/// assert_eq!(half_a_metre_back.centre(), DVec3::new(0.0, 0.0, -500.0));
+/// let point = DVec3::new(1.0, 2.0, 3.0);
+/// assert_eq!(half_a_metre_back.to_world(half_a_metre_back.to_camera(point)), point);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Extrinsics {
     /// R, from world to camera.

@@ -47,6 +47,15 @@ impl Intrinsics {
 
     /// The pixel of a direction (x/z, y/z) in the camera's frame; `None` where the lens has
     /// folded over. It may lie outside the image.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use phalanx_camera::Intrinsics;
+    ///
+    /// let intrinsics = Intrinsics::pinhole(120, 90, 265.0);
+    /// let pixel = intrinsics.to_pixel(DVec2::new(0.1, 0.0)).expect("a perfect lens maps all");
+    /// assert!((pixel - DVec2::new(86.5, 45.0)).length() < 1e-9);
+    /// ```
     pub fn to_pixel(&self, normalised: DVec2) -> Option<DVec2> {
         if self.distortion.is_none() {
             return normalised.is_finite().then(|| self.scaled(normalised));
@@ -67,6 +76,18 @@ impl Intrinsics {
     }
 
     /// From this camera's pixel to that of [`undistorted`](Self::undistorted).
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use phalanx_camera::{Distortion, Intrinsics};
+    ///
+    /// let lens = Distortion { k1: -0.3, ..Distortion::NONE };
+    /// let camera = Intrinsics { distortion: lens, ..Intrinsics::pinhole(120, 90, 265.0) };
+    /// let corner = DVec2::new(119.5, 0.5);
+    /// let straight = camera.undistort(corner).expect("short of the fold");
+    /// assert!(straight.x > corner.x && straight.y < corner.y); // it was pulled in
+    /// assert!((camera.distort(straight).expect("the way back") - corner).length() < 1e-8);
+    /// ```
     pub fn undistort(&self, pixel: DVec2) -> Option<DVec2> {
         Some(self.scaled(self.to_normalised(pixel)?))
     }
@@ -78,6 +99,16 @@ impl Intrinsics {
     }
 
     /// The camera of a window of the image: `width`×`height` pixels from column `x`, row `y`.
+    ///
+    /// ```
+    /// use phalanx_camera::Intrinsics;
+    ///
+    /// let whole = Intrinsics::pinhole(640, 480, 600.0);
+    /// let window = whole.cropped(100, 50, 320, 240)?;
+    /// assert_eq!((window.cx, window.cy, window.fx), (220.0, 190.0, 600.0));
+    /// assert!(whole.cropped(400, 0, 320, 240).is_err()); // it would reach beyond the picture
+    /// # Ok::<(), phalanx_camera::Error>(())
+    /// ```
     pub fn cropped(&self, x: u32, y: u32, width: u32, height: u32) -> Result<Self> {
         let fits = |start: u32, length: u32, whole: u32| {
             length > 0 && start.checked_add(length).is_some_and(|end| end <= whole)
@@ -91,6 +122,13 @@ impl Intrinsics {
     }
 
     /// The camera of the image scaled to `width`×`height` pixels.
+    ///
+    /// ```
+    /// use phalanx_camera::Intrinsics;
+    ///
+    /// let small = Intrinsics::pinhole(640, 480, 600.0).resized(160, 120);
+    /// assert_eq!((small.cx, small.cy, small.fx), (80.0, 60.0, 150.0));
+    /// ```
     #[must_use]
     pub fn resized(&self, width: u32, height: u32) -> Self {
         let sx = f64::from(width) / f64::from(self.width);

@@ -34,6 +34,20 @@ struct Entry {
 /// # Errors
 /// Text of another form, a unit that is no length, or a camera that contradicts itself: each
 /// names the camera and the field.
+///
+/// ```
+/// let json = r#"{"cameras": [{
+///     "name": "left", "width": 640, "height": 480,
+///     "camera_matrix": [[600, 0, 319.5], [0, 600, 239.5], [0, 0, 1]],
+///     "distortion_coefficients": [],
+///     "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+///     "translation": [0, 0, 20]
+/// }]}"#;
+/// let cameras = phalanx_camera::cameras_from_opencv_json(json, 25.0)?; // squares of 25 mm
+/// assert_eq!(cameras[0].intrinsics.cx, 320.0);
+/// assert_eq!(cameras[0].extrinsics.translation.z, 500.0);
+/// # Ok::<(), phalanx_camera::Error>(())
+/// ```
 pub fn cameras_from_opencv_json(text: &str, unit_mm: f64) -> Result<Vec<Camera>> {
     if !(unit_mm > 0.0 && unit_mm.is_finite()) {
         return Err(Error::Unit { unit_mm });

@@ -9,6 +9,18 @@ use crate::{Camera, Error, Result, Volume};
 /// Rigs are read from and written to TOML with [`from_toml`](Self::from_toml) and
 /// [`to_toml`](Self::to_toml). A rig that came another way is checked with
 /// [`validate`](Self::validate).
+///
+/// ```
+/// use phalanx_camera::Rig;
+///
+/// let rig = Rig::from_toml(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/desk.toml")))?;
+/// let [first, .., last] = &rig.cameras[..] else { panic!("a desk has several cameras") };
+/// let pair = rig.select(&[&last.name, &first.name])?;
+/// assert_eq!(pair.cameras[1], *first);
+/// assert!(rig.camera("under the desk").is_err());
+/// assert_eq!(Rig::from_toml(&pair.to_toml()?)?, pair);
+/// # Ok::<(), phalanx_camera::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Rig {
     /// The cameras, in an order that every consumer keeps.

@@ -20,6 +20,18 @@ const LEAST_SINE: f64 = 1e-3;
 ///
 /// # Errors
 /// Fewer than two rays, or rays that are all but parallel, or not finite.
+///
+/// ```
+/// use glam::DVec3;
+/// use phalanx_camera::{Ray, triangulate};
+///
+/// let along_x = Ray { origin: DVec3::new(-9.0, 0.0, 0.0), direction: DVec3::X };
+/// let along_y = Ray { origin: DVec3::new(3.0, -9.0, 2.0), direction: DVec3::Y }; // 2 mm above it
+/// let meeting = triangulate(&[along_x, along_y])?;
+/// assert!((meeting.point - DVec3::new(3.0, 0.0, 1.0)).length() < 1e-9);
+/// assert!((meeting.spread - 1.0).abs() < 1e-9);
+/// # Ok::<(), phalanx_camera::Error>(())
+/// ```
 pub fn triangulate(rays: &[Ray]) -> Result<Triangulation> {
     if rays.len() < 2 {
         return Err(Error::TooFewRays { found: rays.len() });

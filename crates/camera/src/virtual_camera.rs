@@ -28,6 +28,23 @@ impl Camera {
 }
 
 /// From one camera's pixels to those of another at the same place: where both see the same things.
+///
+/// ```
+/// use glam::{DVec2, DVec3};
+/// use phalanx_camera::{Camera, Intrinsics, PixelMap};
+///
+/// let wide = Intrinsics::pinhole(640, 480, 500.0);
+/// let camera = Camera::look_at("desk", wide, DVec3::Z, DVec3::ZERO, DVec3::Y)?;
+/// // Turned to what is at a corner of the picture, and zoomed onto it.
+/// let corner = DVec2::new(600.0, 40.0);
+/// let ahead = camera.unproject(corner).expect("a perfect lens").direction;
+/// let window = camera.turned(ahead, DVec3::X, Intrinsics::pinhole(120, 90, 1500.0))?;
+/// let map = PixelMap::between(&camera, &window);
+/// let middle = map.map(corner).expect("in front of both");
+/// assert!((middle - DVec2::new(60.0, 45.0)).length() < 1e-9);
+/// assert!((map.inverse().map(middle).expect("the way back") - corner).length() < 1e-9);
+/// # Ok::<(), phalanx_camera::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PixelMap {
     from: Intrinsics,

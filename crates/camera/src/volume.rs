@@ -6,6 +6,25 @@ use serde::{Deserialize, Serialize};
 use crate::{Camera, Error, Ray, Result, triangulate};
 
 /// Where the hand works in the world.
+///
+/// ```
+/// use glam::DVec3;
+/// use phalanx_camera::{Camera, Intrinsics, Volume};
+///
+/// let camera = |name, position| {
+///     let intrinsics = Intrinsics::pinhole(120, 90, 265.0);
+///     Camera::look_at(name, intrinsics, position, DVec3::new(0.0, 90.0, 0.0), DVec3::Y)
+/// };
+/// let cameras = [
+///     camera("left", DVec3::new(-400.0, 90.0, 600.0))?,
+///     camera("right", DVec3::new(400.0, 90.0, 600.0))?,
+/// ];
+/// let volume = Volume::between(&cameras, 150.0)?;
+/// assert!((volume.center - DVec3::new(0.0, 90.0, 0.0)).length() < 1e-9);
+/// let fingers = volume.rest_frame().transform_vector3(DVec3::Z);
+/// assert!((fingers - DVec3::Y).length() < 1e-9, "they point up the first picture");
+/// # Ok::<(), phalanx_camera::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Volume {
     /// Where the wrist is at rest, mm.

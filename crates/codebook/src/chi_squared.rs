@@ -3,6 +3,13 @@
 /// 1, and already a square, as its root is a metric.
 ///
 /// Bins beyond the end of the shorter histogram are not looked at.
+///
+/// ```
+/// use phalanx_codebook::chi_squared;
+///
+/// assert_eq!(chi_squared(&[1.0, 0.0], &[0.0, 1.0]), 1.0); // nothing in common
+/// assert_eq!(chi_squared(&[0.5, 0.5], &[0.5, 0.5]), 0.0);
+/// ```
 pub fn chi_squared(a: &[f32], b: &[f32]) -> f64 {
     let term = |(&a, &b): (&f32, &f32)| {
         let (a, b) = (f64::from(a), f64::from(b));

@@ -1,7 +1,12 @@
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Metric, Result, packed::Packed, samples, support::Support};
+use crate::{
+    Error, Metric, Result,
+    packed::{LANES, Lanes, Packed},
+    samples,
+    support::Support,
+};
 
 /// Vectors that stand for those around them.
 ///
@@ -120,6 +125,16 @@ impl Codebook {
     /// # Errors
     /// A sample of another length than [`dim`](Self::dim), or that the metric cannot compare: for χ²
     /// one that is not a histogram that sums to 1.
+    ///
+    /// ```
+    /// use phalanx_codebook::{Codebook, Metric};
+    ///
+    /// let towns = vec![0.0, 0.0, 10.0, 0.0, 0.0, 10.0];
+    /// let codebook = Codebook::with_metric(Metric::Euclidean, towns, 2, 1.0)?;
+    /// let nearest = codebook.nearest(&[1.0, 7.0])?;
+    /// assert_eq!((nearest.centre, nearest.distance), (2, 10.0));
+    /// # Ok::<(), phalanx_codebook::Error>(())
+    /// ```
     pub fn nearest(&self, sample: &[f32]) -> Result<Nearest> {
         if sample.len() != self.dim {
             return Err(Error::Shape { what: "sample", values: sample.len(), dim: self.dim });
@@ -132,9 +147,14 @@ impl Codebook {
     }
 }
 
-/// The index of the first distance that is the smallest one.
+/// The index of the first distance that is the smallest one; the distances are those of whole blocks.
 pub(crate) fn first_equal(distances: &[f32], smallest: f32) -> usize {
-    distances.iter().position(|&d| d == smallest).unwrap_or_default()
+    let (blocks, _) = distances.as_chunks::<LANES>();
+    // A whole block at once, without a branch for each distance.
+    let is_in = |block: &Lanes| block.iter().fold(false, |found, &d| found | (d == smallest));
+    let block = blocks.iter().position(is_in).unwrap_or_default();
+    let lane = blocks[block].iter().position(|&d| d == smallest).unwrap_or_default();
+    block * LANES + lane
 }
 
 /// What is stored of a codebook.

@@ -3,6 +3,20 @@ use serde::{Deserialize, Serialize};
 use crate::{Codebook, Error, Fisher, Result, Scratch, SoftCounts, Vlad, Voting};
 
 /// Something that turns any number of samples into a vector of fixed length, whatever their order.
+///
+/// ```
+/// use phalanx_codebook::{Codebook, Coding, Scratch, SoftCounts, Vlad, Voting};
+///
+/// let codebook = Codebook::from_parts(vec![1.0, 0.0, 0.0, 1.0], 2, 0.1)?;
+/// let votes = SoftCounts { codebook: &codebook, voting: Voting::HARD };
+/// let residuals = Vlad { codebook: codebook.clone() };
+/// for (coding, length) in [(&votes as &dyn Coding, 2), (&residuals, 4)] {
+///     let mut code = vec![0.0; coding.dim()];
+///     coding.encode(&[0.9, 0.1, 0.2, 0.8], &mut Scratch::default(), &mut code)?;
+///     assert_eq!(code.len(), length);
+/// }
+/// # Ok::<(), phalanx_codebook::Error>(())
+/// ```
 pub trait Coding {
     /// The number of bins of a sample.
     fn bins(&self) -> usize;

@@ -42,6 +42,18 @@ impl ExpectationMaximisation {
     /// # Errors
     /// A setting outside its range, no samples, not a whole number of them, one with a number that
     /// is not finite, or fewer different samples than components.
+    ///
+    /// ```
+    /// use phalanx_codebook::ExpectationMaximisation;
+    ///
+    /// let samples = [0.0, 0.2, 0.1, 5.0, 5.2]; // three here, two there
+    /// let em = ExpectationMaximisation { components: 2, ..Default::default() };
+    /// let mixture = em.fit(&samples, 1)?;
+    /// let mut weights = mixture.parts().weights.clone();
+    /// weights.sort_by(f64::total_cmp);
+    /// assert!((weights[0] - 0.4).abs() < 1e-3 && (weights[1] - 0.6).abs() < 1e-3);
+    /// # Ok::<(), phalanx_codebook::Error>(())
+    /// ```
     pub fn fit(&self, samples: &[f32], dim: usize) -> Result<GaussianMixture> {
         self.check()?;
         let kmeans = KMeans {

@@ -11,6 +11,17 @@ use crate::{
 ///
 /// As Perronnin, Sánchez and Mensink (2010) advise, of each number the root is taken, its sign
 /// kept, and the whole has length 1; the derivative by the weights says little and is left out.
+///
+/// ```
+/// use phalanx_codebook::{Coding, Fisher, GaussianMixture, MixtureParts, Scratch};
+///
+/// let (weights, means, variances) = (vec![1.0], vec![0.0], vec![1.0]);
+/// let mixture = GaussianMixture::from_parts(MixtureParts { dim: 1, weights, means, variances })?;
+/// let mut code = [0.0; 2];
+/// Fisher { mixture }.encode(&[3.0, 3.2], &mut Scratch::default(), &mut code)?;
+/// assert!(code[0] > 0.0 && code[1] > 0.0); // the mean should move up, and the deviation grow
+/// # Ok::<(), phalanx_codebook::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Fisher {

@@ -33,6 +33,21 @@ impl GaussianMixture {
     /// No components, means or variances of another number than the weights ask for, weights that
     /// are not positive or do not sum to 1 within [`SUM_TOLERANCE`](crate::SUM_TOLERANCE), means or
     /// variances that are not finite, and variances that are not positive.
+    ///
+    /// ```
+    /// use phalanx_codebook::{GaussianMixture, MixtureParts};
+    ///
+    /// let parts = MixtureParts {
+    ///     dim: 2,
+    ///     weights: vec![0.25, 0.75],
+    ///     means: vec![0.0, 0.0, 3.0, 4.0],
+    ///     variances: vec![1.0; 4],
+    /// };
+    /// let mixture = GaussianMixture::from_parts(parts.clone())?;
+    /// assert_eq!((mixture.len(), mixture.dim()), (2, 2));
+    /// assert!(GaussianMixture::from_parts(MixtureParts { weights: vec![0.5, 0.6], ..parts }).is_err());
+    /// # Ok::<(), phalanx_codebook::Error>(())
+    /// ```
     pub fn from_parts(parts: MixtureParts) -> Result<Self> {
         let MixtureParts { dim, ref weights, ref means, ref variances } = parts;
         samples::check(Metric::Euclidean, "mean", means, dim)?;

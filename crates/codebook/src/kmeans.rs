@@ -76,6 +76,19 @@ impl KMeans {
     /// # Errors
     /// A setting outside its range, no samples, not a whole number of them, one that the metric
     /// cannot compare (for χ², that is not a histogram that sums to 1), or fewer different samples than centres.
+    ///
+    /// ```
+    /// use phalanx_codebook::{KMeans, Metric};
+    ///
+    /// let samples = [0.0, 0.2, 5.0, 5.2];
+    /// let kmeans = KMeans { centres: 2, metric: Metric::Euclidean, ..KMeans::default() };
+    /// let fit = kmeans.fit(&samples, 1)?;
+    /// let mut centres = fit.codebook.centres().to_vec();
+    /// centres.sort_by(f32::total_cmp);
+    /// assert!((centres[0] - 0.1).abs() < 1e-6 && (centres[1] - 5.1).abs() < 1e-6);
+    /// assert!((fit.report.distortions.last().unwrap() - 0.01).abs() < 1e-6);
+    /// # Ok::<(), phalanx_codebook::Error>(())
+    /// ```
     pub fn fit(&self, samples: &[f32], dim: usize) -> Result<Fit> {
         self.check()?;
         samples::check(self.metric, "sample", samples, dim)?;

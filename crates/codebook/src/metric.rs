@@ -15,6 +15,14 @@ pub enum Metric {
 
 impl Metric {
     /// The distance of two vectors of the same length, in double precision.
+    ///
+    /// ```
+    /// use phalanx_codebook::Metric;
+    ///
+    /// let (a, b) = ([1.0, 0.0], [0.0, 1.0]);
+    /// assert_eq!(Metric::ChiSquared.distance(&a, &b), 1.0);
+    /// assert_eq!(Metric::Euclidean.distance(&a, &b), 2.0);
+    /// ```
     pub fn distance(self, a: &[f32], b: &[f32]) -> f64 {
         match self {
             Self::ChiSquared => chi_squared(a, b),

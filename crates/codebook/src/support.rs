@@ -5,7 +5,7 @@ const NEGLIGIBLE: f32 = 1e-12;
 /// A vector prepared to be compared with many others at once.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Support {
-    /// The vector with the others' origin taken away.
+    /// For Euclidean distances, the vector with the others' origin taken away.
     pub(crate) moved: Vec<f32>,
     bins: Vec<Bin>,
     filled: usize,
@@ -32,22 +32,14 @@ pub(crate) struct Pair {
 }
 
 impl Support {
-    /// For Euclidean distances, twice the numbers that are not zero.
-    pub(crate) fn terms(&self) -> &[Bin] {
-        &self.bins[..self.filled]
-    }
-
-    pub(crate) fn find_terms(&mut self, vector: &[f32]) {
-        self.bins.resize(vector.len(), Bin::default());
-        let mut filled = 0;
-        // Without a branch for the processor to guess, and in partial sums.
-        let mut squares = [0.0; 4];
-        for (index, &value) in vector.iter().enumerate() {
-            self.bins[filled] = Bin { index, height: 2.0 * value };
-            filled += usize::from(value != 0.0);
-            squares[index % 4] += value * value;
+    /// Sums the squares of the moved vector, in partial sums that do not wait for each other.
+    pub(crate) fn sum_squares(&mut self) {
+        let mut squares = [0.0; 16];
+        for part in self.moved.chunks(squares.len()) {
+            for (square, value) in squares.iter_mut().zip(part) {
+                *square += value * value;
+            }
         }
-        self.filled = filled;
         self.mass = squares.iter().sum();
     }
 

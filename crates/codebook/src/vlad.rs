@@ -14,6 +14,16 @@ use crate::{
 /// Counts tell how many samples are near a centre, residuals to which side of it they lie, so that
 /// few centres say much. As Jégou et al. (2012) advise, of each sum the root is taken, its sign
 /// kept, so that no frequent sample drowns the others, and the whole has length 1.
+///
+/// ```
+/// use phalanx_codebook::{Codebook, Coding, Metric, Scratch, Vlad};
+///
+/// let codebook = Codebook::with_metric(Metric::Euclidean, vec![0.0, 10.0], 1, 1.0)?;
+/// let mut code = [0.0; 2];
+/// Vlad { codebook }.encode(&[-1.0, 14.0], &mut Scratch::default(), &mut code)?;
+/// assert!(code[0] < 0.0 && code[1] > 0.0); // below the first centre, above the second
+/// # Ok::<(), phalanx_codebook::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Vlad {

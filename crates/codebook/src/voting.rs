@@ -58,6 +58,18 @@ impl Codebook {
     /// # Errors
     /// No samples, not a whole number of them, one that the metric cannot compare, no
     /// neighbours or more than centres, or an output of another length than the centres'.
+    ///
+    /// ```
+    /// use phalanx_codebook::{Codebook, Scratch, Voting};
+    ///
+    /// let codebook = Codebook::from_parts(vec![1.0, 0.0, 0.0, 1.0], 2, 0.5)?;
+    /// let samples = [1.0, 0.0, 0.5, 0.5]; // one is a centre, the other halfway
+    /// let mut votes = [0.0; 2];
+    /// codebook.soft_assign(&samples, Voting { neighbours: 2 }, &mut Scratch::default(), &mut votes)?;
+    /// assert!(votes[0] > votes[1] && votes[1] > 0.25);
+    /// assert!((votes[0] + votes[1] - 1.0).abs() < 1e-12);
+    /// # Ok::<(), phalanx_codebook::Error>(())
+    /// ```
     pub fn soft_assign(
         &self,
         samples: &[f32],

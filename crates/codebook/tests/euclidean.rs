@@ -44,18 +44,23 @@ proptest! {
         prop_assert!((fit.codebook.scale() / slow - 1.0).abs() < 1e-3, "{} {slow}", fit.codebook.scale());
     }
 
+    /// However many centres are left over from the registers' worth that meet a sample at once.
     #[test]
     fn the_nearest_centre_is_the_slow_versions(
-        values in prop::collection::vec(-1e3..1e3_f32, 7 * 40),
-        sample in prop::collection::vec(-1e3..1e3_f32, 7),
+        count in 1..260_usize,
+        dim in 1..9_usize,
+        values in prop::collection::vec(-1e3..1e3_f32, 260 * 8),
+        sample in prop::collection::vec(-1e3..1e3_f32, 8),
     ) {
-        let codebook = Codebook::with_metric(METRIC, values.clone(), 7, 1.0)?;
-        let nearest = codebook.nearest(&sample)?;
+        let (values, sample) = (&values[..count * dim], &sample[..dim]);
+        let codebook = Codebook::with_metric(METRIC, values.to_vec(), dim, 1.0)?;
+        let nearest = codebook.nearest(sample)?;
         let distances: Vec<f64> =
-            values.chunks_exact(7).map(|centre| squared_euclidean(centre, &sample)).collect();
+            values.chunks_exact(dim).map(|centre| squared_euclidean(centre, sample)).collect();
         let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
-        prop_assert!(distances[nearest.centre] <= least * (1.0 + 1e-4) + 1.0);
-        prop_assert!((f64::from(nearest.distance) - distances[nearest.centre]).abs() <= 1e-5 * 7e6);
+        let rounding = 1e-6 * dim as f64 * 1e6;
+        prop_assert!(distances[nearest.centre] <= least + 2.0 * rounding);
+        prop_assert!((f64::from(nearest.distance) - distances[nearest.centre]).abs() <= rounding);
     }
 
     /// One batch added again and again is Lloyd's iteration slowed down.
@@ -90,6 +95,41 @@ proptest! {
             prop_assert_eq!(cover.fit(&samples, DIM)?, codebook);
         }
     }
+}
+
+/// Lloyd's iteration, in double precision and without any haste, from the same seeds.
+#[test]
+fn every_iteration_is_the_slow_versions() {
+    let samples = histograms(2000, 11);
+    for centres in [1, 30, 90, 97] {
+        let fit = |max_iterations| {
+            let kmeans = KMeans { max_iterations, tolerance: 0.0, ..settings(centres) };
+            kmeans.fit(&samples, DIM).expect("a codebook")
+        };
+        let mut slow = fit(1).codebook.centres().to_vec();
+        for iterations in 2..8 {
+            slow = slow_iteration(&samples, &slow);
+            for (a, b) in fit(iterations).codebook.centres().iter().zip(&slow) {
+                assert!((a - b).abs() < 1e-6, "{centres} centres, {iterations}: {a} {b}");
+            }
+        }
+    }
+}
+
+/// The mean of the samples of each centre, none of which has lost them all.
+fn slow_iteration(samples: &[f32], centres: &[f32]) -> Vec<f32> {
+    let mut sums = vec![0.0_f64; centres.len()];
+    let mut counts = vec![0.0; centres.len() / DIM];
+    for sample in samples.chunks_exact(DIM) {
+        let distances = centres.chunks_exact(DIM).map(|centre| squared_euclidean(sample, centre));
+        let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).expect("a centre").0;
+        counts[nearest] += 1.0;
+        for (sum, &value) in sums[nearest * DIM..].iter_mut().zip(sample) {
+            *sum += f64::from(value);
+        }
+    }
+    assert!(counts.iter().all(|&count| count > 0.0), "{counts:?}");
+    sums.iter().enumerate().map(|(i, sum)| (sum / counts[i / DIM]) as f32).collect()
 }
 
 #[test]

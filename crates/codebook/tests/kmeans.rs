@@ -3,7 +3,7 @@
 mod histograms;
 
 use histograms::{DIM, histograms};
-use phalanx_codebook::{Codebook, Error, Fit, KMeans, chi_squared};
+use phalanx_codebook::{Error, Fit, KMeans, chi_squared};
 use proptest::prelude::*;
 
 fn fit(kmeans: KMeans, samples: &[f32]) -> Fit {
@@ -161,11 +161,4 @@ fn settings_out_of_range_and_bad_samples_are_refused() {
     assert!(matches!(error(&bad, DIM), Error::BadHeight { index: 3, bin: 7, .. }));
     let greedy = KMeans { centres: usize::MAX, ..good };
     assert!(matches!(greedy.fit(&samples, DIM), Err(Error::TooFewDistinct { .. })));
-}
-
-#[test]
-fn codebooks_can_be_shared_between_threads() {
-    fn shared<T: Send + Sync>() {}
-    shared::<Codebook>();
-    shared::<KMeans>();
 }

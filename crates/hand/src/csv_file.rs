@@ -24,6 +24,16 @@ impl PoseTable {
     ///
     /// # Errors
     /// Malformed CSV, an unknown or repeated column, a cell that is no finite number, no row.
+    ///
+    /// ```
+    /// use phalanx_hand::{Dof, PoseTable};
+    ///
+    /// let table = PoseTable::read("frame,index.pip\n0,30\n1,60\n".as_bytes())?;
+    /// assert_eq!(table.poses[1][Dof::IndexPip], 60_f64.to_radians());
+    /// assert_eq!(table.frames, Some(vec!["0".to_owned(), "1".to_owned()]));
+    /// assert!(PoseTable::read("index.knee\n30\n".as_bytes()).is_err());
+    /// # Ok::<(), phalanx_hand::Error>(())
+    /// ```
     pub fn read(reader: impl Read) -> Result<Self> {
         let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(reader);
         let mut warnings = Vec::new();
@@ -97,6 +107,17 @@ fn range_warning(poses: &[Pose]) -> Option<String> {
 ///
 /// # Errors
 /// What the writer reports.
+///
+/// ```
+/// use phalanx_hand::{Dof, Pose, write_poses};
+///
+/// let mut pose = Pose::REST;
+/// pose[Dof::ThetaZ] = 90_f64.to_radians();
+/// let mut file = Vec::new();
+/// write_poses(&mut file, &[pose], &[Dof::ThetaZ, Dof::TX])?;
+/// assert_eq!(file, b"frame,global.theta_z,global.t_x\n0,90.0000,0.0000\n");
+/// # Ok::<(), phalanx_hand::Error>(())
+/// ```
 pub fn write_poses(writer: impl Write, poses: &[Pose], dofs: &[Dof]) -> Result<()> {
     let mut csv = csv::Writer::from_writer(writer);
     csv.write_record(std::iter::once(FRAME).chain(dofs.iter().map(|dof| dof.name())))?;

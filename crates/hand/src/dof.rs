@@ -28,6 +28,15 @@ impl Digit {
 
     /// The digit's abduction followed by its three flexions from the base outwards: CMC, MCP
     /// and IP for the thumb; MCP, PIP and DIP for a finger.
+    ///
+    /// ```
+    /// use phalanx_hand::{Digit, Dof};
+    ///
+    /// let [_, mcp, pip, dip] = Digit::Index.dofs();
+    /// assert_eq!([mcp, pip, dip], [Dof::IndexMcp, Dof::IndexPip, Dof::IndexDip]);
+    /// assert_eq!("index.pip".parse::<Dof>()?, pip);
+    /// # Ok::<(), phalanx_hand::Error>(())
+    /// ```
     pub fn dofs(self) -> [Dof; 4] {
         let first = self as usize * 4;
         std::array::from_fn(|k| Dof::ALL[first + k])

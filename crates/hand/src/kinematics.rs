@@ -74,6 +74,19 @@ impl HandShape {
 
     /// How each number of the pose moves the hand, in world coordinates: the derivative of
     /// [`pose`](Self::pose) in closed form.
+    ///
+    /// ```
+    /// use glam::DAffine3;
+    /// use phalanx_hand::{Dof, HandShape, Pose};
+    ///
+    /// let (shape, rest) = (HandShape::adult(), DAffine3::IDENTITY);
+    /// let tip = |pose: &Pose| shape.pose(pose, &rest).joints[8]; // of the index finger
+    /// let mut bent = Pose::REST;
+    /// bent[Dof::IndexPip] = 1e-6;
+    /// let moved = (tip(&bent) - tip(&Pose::REST)) / 1e-6;
+    /// let motions = shape.motions(&Pose::REST, &rest);
+    /// assert!((motions.of(Dof::IndexPip).velocity(tip(&Pose::REST)) - moved).length() < 1e-3);
+    /// ```
     pub fn motions(&self, pose: &Pose, rest: &DAffine3) -> Motions {
         let (palm, rotation) = (palm_rotation(pose), pose.rotation());
         let own = *rest * self.global_motion(pose);

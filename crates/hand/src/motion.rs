@@ -23,6 +23,14 @@ impl Link {
     }
 
     /// The numbers of the pose that move this part: at most 12.
+    ///
+    /// ```
+    /// use phalanx_hand::{Digit, Dof, Link};
+    ///
+    /// let middle_phalanx = Link::Segment(Digit::Index, 1);
+    /// assert!(middle_phalanx.is_moved_by(Dof::IndexPip) && !middle_phalanx.is_moved_by(Dof::IndexDip));
+    /// assert_eq!(Link::Forearm.dofs().count(), 6);
+    /// ```
     pub fn dofs(self) -> impl Iterator<Item = Dof> {
         let global = 6;
         let (wrist, digit) = match self {

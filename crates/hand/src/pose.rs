@@ -30,6 +30,16 @@ impl Pose {
     }
 
     /// The numbers outside their plausible range, a bent knuckle's narrower abduction included.
+    ///
+    /// ```
+    /// use phalanx_hand::{Dof, Pose};
+    ///
+    /// let mut pose = Pose::REST;
+    /// pose[Dof::IndexAbduction] = 15_f64.to_radians();
+    /// assert_eq!(pose.out_of_range(), []);
+    /// pose[Dof::IndexMcp] = 90_f64.to_radians(); // a bent knuckle spreads less
+    /// assert_eq!(pose.out_of_range(), [Dof::IndexAbduction]);
+    /// ```
     pub fn out_of_range(&self) -> Vec<Dof> {
         // A file's decimal degrees do not come back exactly.
         const SLACK: f64 = 1e-9;
@@ -51,6 +61,13 @@ impl Pose {
 /// The largest abduction to either side, radians, of a finger whose knuckle is flexed by `mcp`
 /// radians: 20° when straight, shrinking linearly to 5° at 90° because the collateral ligaments
 /// tighten.
+///
+/// ```
+/// use phalanx_hand::abduction_limit;
+///
+/// assert!((abduction_limit(0.0).to_degrees() - 20.0).abs() < 1e-9);
+/// assert!((abduction_limit(90_f64.to_radians()).to_degrees() - 5.0).abs() < 1e-9);
+/// ```
 pub fn abduction_limit(mcp: f64) -> f64 {
     let bent = (mcp / std::f64::consts::FRAC_PI_2).clamp(0.0, 1.0);
     (20.0 - 15.0 * bent).to_radians()

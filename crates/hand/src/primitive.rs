@@ -64,6 +64,15 @@ impl Primitive {
     }
 
     /// The solid moved by a rigid motion (a rotation, possibly with a reflection, and a shift).
+    ///
+    /// ```
+    /// use glam::{DAffine3, DVec3};
+    /// use phalanx_hand::{Ball, Primitive};
+    ///
+    /// let up = DAffine3::from_translation(DVec3::Y);
+    /// let ball = Primitive::Sphere(Ball::new(DVec3::ZERO, 8.0));
+    /// assert_eq!(ball.moved(&up).balls(), [Ball::new(DVec3::Y, 8.0)]);
+    /// ```
     #[must_use]
     pub fn moved(&self, motion: &DAffine3) -> Self {
         let ball = |b: &Ball| Ball::new(motion.transform_point3(b.center), b.radius);

@@ -31,6 +31,22 @@ pub fn coupled_posture(digit: Digit, mut uniform: impl FnMut() -> f64) -> [f64; 
 }
 
 /// A pose whose digits are independent [`coupled_posture`]s; all else is at rest.
+///
+/// ```
+/// use phalanx_hand::{Dof, coupled_pose};
+///
+/// let mut state = 1_u64; // any generator will do
+/// let mut uniform = || {
+///     state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+///     (state >> 11) as f64 / (1_u64 << 53) as f64
+/// };
+/// for _ in 0..100 {
+///     let pose = coupled_pose(&mut uniform);
+///     assert_eq!(pose.out_of_range(), []);
+///     let uncoupled = pose[Dof::IndexDip] - 2.0 / 3.0 * pose[Dof::IndexPip];
+///     assert!(uncoupled.abs() < 6.1_f64.to_radians());
+/// }
+/// ```
 pub fn coupled_pose(mut uniform: impl FnMut() -> f64) -> Pose {
     let mut pose = Pose::REST;
     for digit in Digit::ALL {

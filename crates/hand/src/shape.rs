@@ -156,6 +156,15 @@ impl HandShape {
     ///
     /// # Errors
     /// Malformed TOML, an absent or unknown field, a number that no hand has.
+    ///
+    /// ```
+    /// use phalanx_hand::HandShape;
+    ///
+    /// let adult = HandShape::adult();
+    /// assert_eq!(HandShape::from_toml(&adult.to_toml())?, adult);
+    /// assert!(HandShape::from_toml("side = 'right'").is_err());
+    /// # Ok::<(), phalanx_hand::Error>(())
+    /// ```
     pub fn from_toml(text: &str) -> Result<Self> {
         let shape: Self = toml::from_str(text)?;
         shape.validate()?;

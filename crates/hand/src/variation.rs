@@ -9,6 +9,15 @@ impl HandShape {
     /// which `factor` gives (uniform in 0.9 … 1.1, say). The palm's bones are the distances of
     /// the digits' bases and of the heel from the wrist. Angles and the forearm's length, which
     /// pictures cut, stay.
+    ///
+    /// ```
+    /// use glam::DAffine3;
+    /// use phalanx_hand::{HandShape, Pose};
+    ///
+    /// let larger = HandShape::adult().varied(|| 1.1);
+    /// let reach = |shape: &HandShape| shape.pose(&Pose::REST, &DAffine3::IDENTITY).joints[12].length();
+    /// assert!((reach(&larger) / reach(&HandShape::adult()) - 1.1).abs() < 1e-9);
+    /// ```
     #[must_use]
     pub fn varied(&self, mut factor: impl FnMut() -> f64) -> Self {
         let vary = &mut factor;

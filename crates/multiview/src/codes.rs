@@ -18,6 +18,20 @@ impl Codes {
     ///
     /// # Errors
     /// No view, or votes into more neighbours than a codebook has centres.
+    ///
+    /// ```
+    /// use phalanx_codebook::{AnyCoding, Codebook, Vlad};
+    /// use phalanx_multiview::{Codes, Scratch};
+    ///
+    /// let codebook = Codebook::from_parts(vec![1.0, 0.0, 0.0, 1.0], 2, 0.1)?;
+    /// let view = AnyCoding::Vlad(Vlad { codebook });
+    /// let joined = Codes::from_parts(vec![view.clone(), view])?;
+    /// let mut x = vec![0.0; joined.dim()];
+    /// joined.describe(&[[0.9, 0.1], [0.2, 0.8]], &mut Scratch::default(), &mut x)?;
+    /// assert_eq!(x.len(), 8);
+    /// assert!(x[0] < 0.0 && x[1] > 0.0, "the first histogram is to this side of its centre");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn from_parts(views: Vec<AnyCoding>) -> Result<Self> {
         if views.is_empty() {
             return Err(Error::NoViews);

@@ -16,6 +16,12 @@ pub struct Estimate<'a> {
 ///
 /// # Errors
 /// No view, views of different lengths, an estimate that is not finite.
+///
+/// ```
+/// let views = [[10.0, -2.0], [14.0, 0.0]];
+/// assert_eq!(phalanx_multiview::mean(&views)?, [12.0, -1.0]);
+/// # Ok::<(), phalanx_multiview::Error>(())
+/// ```
 pub fn mean<E: AsRef<[f64]>>(estimates: &[E]) -> Result<Vec<f64>> {
     let outputs = estimates.first().ok_or(Error::NoViews)?.as_ref().len();
     let mut mean = vec![0.0; outputs];
@@ -38,6 +44,17 @@ pub fn mean<E: AsRef<[f64]>>(estimates: &[E]) -> Result<Vec<f64>> {
 /// # Errors
 /// No view, views of different lengths, an estimate that is not finite, a deviation that is
 /// negative or not finite.
+///
+/// ```
+/// use phalanx_multiview::{Estimate, inverse_variance};
+///
+/// let sure = Estimate { mean: &[10.0], std: &[1.0] };
+/// let unsure = Estimate { mean: &[20.0], std: &[3.0] };
+/// let (mean, std) = inverse_variance(&[sure, unsure])?;
+/// assert!((mean[0] - 11.0).abs() < 1e-12); // nine times the weight
+/// assert!(std[0] < 1.0);
+/// # Ok::<(), phalanx_multiview::Error>(())
+/// ```
 pub fn inverse_variance(estimates: &[Estimate<'_>]) -> Result<(Vec<f64>, Vec<f64>)> {
     let outputs = estimates.first().ok_or(Error::NoViews)?.mean.len();
     for (view, estimate) in estimates.iter().enumerate() {

@@ -41,6 +41,19 @@ impl Concatenation {
     ///
     /// # Errors
     /// No view, or a codebook with fewer centres than each shape context votes into.
+    ///
+    /// ```
+    /// use phalanx_codebook::{Codebook, Voting};
+    /// use phalanx_multiview::{Concatenation, Scratch};
+    ///
+    /// let codebook = Codebook::from_parts(vec![1.0, 0.0, 0.0, 1.0], 2, 0.1)?;
+    /// let joined = Concatenation::from_parts(vec![codebook.clone(), codebook], Voting::HARD)?;
+    /// let views = [[0.9, 0.1], [0.2, 0.8]]; // one histogram each
+    /// let mut x = [0.0; 4];
+    /// joined.describe(&views, &mut Scratch::default(), &mut x)?;
+    /// assert_eq!(x, [1.0, 0.0, 0.0, 1.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn from_parts(codebooks: Vec<Codebook>, voting: Voting) -> Result<Self> {
         if codebooks.is_empty() {
             return Err(Error::NoViews);

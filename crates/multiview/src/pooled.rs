@@ -42,6 +42,20 @@ impl Pooled {
     ///
     /// # Errors
     /// A codebook with fewer centres than each shape context votes into.
+    ///
+    /// ```
+    /// use phalanx_codebook::{Codebook, Voting};
+    /// use phalanx_multiview::{Pooled, Scratch};
+    ///
+    /// let codebook = Codebook::from_parts(vec![1.0, 0.0, 0.0, 1.0], 2, 0.1)?;
+    /// let pooled = Pooled::from_parts(codebook, Voting::HARD)?;
+    /// let mut x = [0.0; 2];
+    /// pooled.describe(&[[0.9, 0.1], [0.2, 0.8]], &mut Scratch::default(), &mut x)?;
+    /// assert_eq!(x, [0.5, 0.5]);
+    /// pooled.describe(&[[0.9, 0.1]], &mut Scratch::default(), &mut x)?; // a view is missing
+    /// assert_eq!(x, [1.0, 0.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn from_parts(codebook: Codebook, voting: Voting) -> Result<Self> {
         let (neighbours, centres) = (voting.neighbours, codebook.len());
         if !(1..=centres).contains(&neighbours) {

@@ -51,6 +51,23 @@ impl Vocabulary {
     ///
     /// # Errors
     /// As of [`fit`](Self::fit).
+    ///
+    /// ```
+    /// use phalanx_multiview::Vocabulary;
+    ///
+    /// // 40 samples of two views, five 3-bin histograms each.
+    /// let histogram = |k: usize| {
+    ///     let (a, b) = ((k % 7) as f32 / 12.0, (k % 5) as f32 / 12.0);
+    ///     vec![a, b, 1.0 - a - b]
+    /// };
+    /// let sample = |i: usize| vec![(i..i + 5).flat_map(histogram).collect::<Vec<f32>>(); 2];
+    /// let samples: Vec<_> = (0..40).map(sample).collect();
+    ///
+    /// let vocabulary = Vocabulary { centres: 4, ..Vocabulary::default() };
+    /// let codes = vocabulary.fit_residuals(&samples, 3)?;
+    /// assert_eq!(codes.dim(), 4 * 3); // two centres a view, three residuals a centre
+    /// # Ok::<(), phalanx_multiview::Error>(())
+    /// ```
     pub fn fit_residuals<S, V>(&self, contexts: &[S], dim: usize) -> Result<Codes>
     where
         S: AsRef<[V]>,
@@ -87,6 +104,24 @@ impl Vocabulary {
     ///
     /// # Errors
     /// As of [`fit`](Self::fit).
+    ///
+    /// ```
+    /// use phalanx_multiview::{Scratch, Vocabulary};
+    ///
+    /// // 40 samples of two views, five 3-bin histograms each.
+    /// let histogram = |k: usize| {
+    ///     let (a, b) = ((k % 7) as f32 / 12.0, (k % 5) as f32 / 12.0);
+    ///     vec![a, b, 1.0 - a - b]
+    /// };
+    /// let sample = |i: usize| vec![(i..i + 5).flat_map(histogram).collect::<Vec<f32>>(); 2];
+    /// let samples: Vec<_> = (0..40).map(sample).collect();
+    ///
+    /// let pooled = Vocabulary { centres: 6, ..Vocabulary::default() }.pool(&samples, 3)?;
+    /// let mut x = vec![0.0; pooled.dim()];
+    /// pooled.describe(&samples[0], &mut Scratch::default(), &mut x)?;
+    /// assert!((x.iter().sum::<f64>() - 1.0).abs() < 1e-6);
+    /// # Ok::<(), phalanx_multiview::Error>(())
+    /// ```
     pub fn pool<S, V>(&self, contexts: &[S], dim: usize) -> Result<Pooled>
     where
         S: AsRef<[V]>,

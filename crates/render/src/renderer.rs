@@ -112,6 +112,22 @@ impl Renderer {
     /// The solids' silhouette: 255 where a pixel's centre is covered, else 0. Outlines are
     /// accurate to 0.01 px, unless they may be
     /// [further off](Self::with_deviation).
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use phalanx_camera::{Camera, Intrinsics};
+    /// use phalanx_hand::{Ball, Primitive};
+    /// use phalanx_render::Renderer;
+    ///
+    /// let intrinsics = Intrinsics::pinhole(120, 90, 265.0);
+    /// let camera = Camera::look_at("top", intrinsics, 700.0 * DVec3::Y, DVec3::ZERO, DVec3::X)?;
+    /// let ball = [Primitive::Sphere(Ball::new(DVec3::ZERO, 20.0))];
+    /// let mut renderer = Renderer::new(&camera)?;
+    ///
+    /// let silhouette = renderer.silhouette(&ball)?;
+    /// assert_eq!((silhouette[(60, 45)].0, silhouette[(70, 45)].0), ([255], [0]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn silhouette(&mut self, primitives: &[Primitive]) -> Result<GrayImage> {
         let mut image = GrayImage::default();
         self.silhouette_into(primitives, &mut image)?;
@@ -132,6 +148,24 @@ impl Renderer {
     }
 
     /// How much of each pixel the solids cover, 0 to 255, by its samples.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use phalanx_camera::{Camera, Intrinsics};
+    /// use phalanx_hand::{Ball, Primitive};
+    /// use phalanx_render::{Renderer, Supersampling};
+    ///
+    /// let intrinsics = Intrinsics::pinhole(120, 90, 265.0);
+    /// let camera = Camera::look_at("top", intrinsics, 700.0 * DVec3::Y, DVec3::ZERO, DVec3::X)?;
+    /// let ball = [Primitive::Sphere(Ball::new(DVec3::ZERO, 20.0))];
+    /// let mut renderer = Renderer::new(&camera)?;
+    ///
+    /// let coverage = renderer.coverage(&ball, Supersampling::X8)?;
+    /// let area = coverage.iter().map(|&grey| f64::from(grey) / 255.0).sum::<f64>();
+    /// let radius = 265.0 * 20.0 / f64::sqrt(700.0 * 700.0 - 20.0 * 20.0);
+    /// assert!((area / (std::f64::consts::PI * radius * radius) - 1.0).abs() < 0.01);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn coverage(
         &mut self,
         primitives: &[Primitive],
@@ -172,6 +206,23 @@ impl Renderer {
     }
 
     /// The depth of what each pixel's centre sees, by casting rays.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use phalanx_camera::{Camera, Intrinsics};
+    /// use phalanx_hand::{Ball, Primitive};
+    /// use phalanx_render::Renderer;
+    ///
+    /// let intrinsics = Intrinsics::pinhole(120, 90, 265.0);
+    /// let camera = Camera::look_at("top", intrinsics, 700.0 * DVec3::Y, DVec3::ZERO, DVec3::X)?;
+    /// let ball = [Primitive::Sphere(Ball::new(DVec3::ZERO, 20.0))];
+    /// let mut renderer = Renderer::new(&camera)?;
+    ///
+    /// let depth = renderer.depth(&ball)?;
+    /// assert!((depth.depths[45 * 120 + 60] - 680.0).abs() < 0.1);
+    /// assert_eq!(depth.depths[0], f32::INFINITY);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn depth(&mut self, primitives: &[Primitive]) -> Result<DepthMap> {
         self.build(primitives)?;
         let (width, height) = self.size();
@@ -185,6 +236,24 @@ impl Renderer {
 
     /// A shaded colour picture with sensor noise, by casting rays; the same seed gives the
     /// same picture.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use phalanx_camera::{Camera, Intrinsics};
+    /// use phalanx_hand::{Ball, Primitive};
+    /// use phalanx_render::{Appearance, Renderer};
+    ///
+    /// let intrinsics = Intrinsics::pinhole(120, 90, 265.0);
+    /// let camera = Camera::look_at("top", intrinsics, 700.0 * DVec3::Y, DVec3::ZERO, DVec3::X)?;
+    /// let ball = [Primitive::Sphere(Ball::new(DVec3::ZERO, 20.0))];
+    /// let mut renderer = Renderer::new(&camera)?;
+    ///
+    /// let appearance = Appearance::default();
+    /// let picture = renderer.shade(&ball, &appearance, 1)?;
+    /// assert_eq!(renderer.shade(&ball, &appearance, 1)?, picture);
+    /// assert_ne!(renderer.shade(&ball, &appearance, 2)?, picture); // other noise
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn shade(
         &mut self,
         primitives: &[Primitive],

@@ -42,6 +42,20 @@ pub struct BackgroundParts {
 /// As in Horprasert et al. (1999) a colour is compared with the background's in two ways: how much
 /// brighter or darker it is, and how far off the line through black it is. Somewhat darker in the
 /// same hue is a shadow, and no hand.
+///
+/// ```
+/// use image::{Rgb, RgbImage};
+/// use phalanx_segmentation::{BackgroundModel, BackgroundParams};
+///
+/// let desk = RgbImage::from_pixel(32, 24, Rgb([120, 130, 140]));
+/// let model = BackgroundModel::from_frames(&[desk.clone()], BackgroundParams::default())?;
+/// let mut picture = desk;
+/// picture.put_pixel(5, 6, Rgb([210, 150, 120])); // skin
+/// picture.put_pixel(8, 9, Rgb([96, 104, 112])); // a shadow
+/// let mask = model.segment(&picture)?;
+/// assert_eq!((mask[(5, 6)].0, mask[(8, 9)].0), ([255], [0]));
+/// # Ok::<(), phalanx_segmentation::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "BackgroundParts", into = "BackgroundParts")]
 pub struct BackgroundModel {

@@ -5,6 +5,14 @@ const CENTRE: i32 = (128 << 16) + (1 << 15);
 
 /// Blue and red chroma (Cb, Cr) of an sRGB pixel: ITU-R BT.601 in full range, as in JPEG files,
 /// rounded to whole levels; grey is (128, 128).
+///
+/// ```
+/// use phalanx_segmentation::chroma;
+///
+/// assert_eq!(chroma([90, 90, 90]), (128, 128));
+/// let (blue, red) = chroma([205, 150, 125]); // skin
+/// assert!(blue < 128 && red > 128);
+/// ```
 #[inline]
 pub fn chroma([r, g, b]: [u8; 3]) -> (u8, u8) {
     let [r, g, b] = [i32::from(r), i32::from(g), i32::from(b)];

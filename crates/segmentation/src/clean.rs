@@ -64,6 +64,20 @@ pub struct Workspace {
 ///
 /// Choosing the component and filling holes change nothing the second time; the majority vote
 /// rounds sharp corners each time.
+///
+/// ```
+/// use image::{GrayImage, Luma};
+/// use phalanx_segmentation::{Cleanup, clean};
+///
+/// let mut mask = GrayImage::from_fn(40, 30, |x, y| {
+///     Luma([if (15..25).contains(&x) && y >= 10 { 255 } else { 0 }])
+/// });
+/// mask.put_pixel(3, 3, Luma([255])); // speckle
+/// mask.put_pixel(20, 20, Luma([0])); // a hole
+/// let cleaned = clean(&mask, &Cleanup::default())?;
+/// assert_eq!((cleaned[(3, 3)].0, cleaned[(20, 20)].0), ([0], [255]));
+/// # Ok::<(), phalanx_segmentation::Error>(())
+/// ```
 pub fn clean(mask: &GrayImage, cleanup: &Cleanup) -> Result<GrayImage> {
     let mut cleaned = GrayImage::default();
     clean_into(mask, cleanup, &mut Workspace::default(), &mut cleaned)?;

@@ -39,6 +39,19 @@ impl Contour {
 
     /// The contour of the component to which the first hand pixel in reading order belongs. Empty
     /// where there is no hand, or no background outside it.
+    ///
+    /// ```
+    /// use image::{GrayImage, Luma};
+    /// use phalanx_segmentation::Contour;
+    ///
+    /// let mask = GrayImage::from_fn(40, 30, |x, y| {
+    ///     Luma([if (15..25).contains(&x) && y >= 10 { 255 } else { 0 }])
+    /// });
+    /// let contour = Contour::trace(&mask); // up one side, along the top, and down the other
+    /// assert!(!contour.is_closed());
+    /// assert_eq!(contour.pieces().len(), 1);
+    /// assert_eq!(contour.points.len(), 20 + 8 + 20);
+    /// ```
     pub fn trace(mask: &GrayImage) -> Self {
         let mut contour = Self::default();
         contour.trace_again(mask);

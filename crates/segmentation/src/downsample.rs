@@ -24,6 +24,14 @@ pub struct CropWindow {
 impl CropWindow {
     /// The largest centred window of a `source` image with the shape of the `target`, both (width,
     /// height) in pixels. The shorter side is rounded to whole pixels, the offset down.
+    ///
+    /// ```
+    /// use phalanx_segmentation::CropWindow;
+    ///
+    /// let window = CropWindow::centred((1920, 1080), (120, 90))?;
+    /// assert_eq!((window.x, window.y, window.width, window.height), (240, 0, 1440, 1080));
+    /// # Ok::<(), phalanx_segmentation::Error>(())
+    /// ```
     pub fn centred(source: (u32, u32), target: (u32, u32)) -> Result<Self> {
         for (width, height) in [source, target] {
             if width == 0 || height == 0 {
@@ -46,6 +54,15 @@ impl CropWindow {
 /// The average colour of the source over each target pixel, rounded; exact for any ratio of sizes.
 /// The centred window with the target's shape is taken ([`CropWindow::centred`]); nothing is
 /// padded.
+///
+/// ```
+/// use image::{Rgb, RgbImage};
+///
+/// let halves = RgbImage::from_fn(4, 4, |x, _| Rgb([if x < 1 { 200 } else { 100 }; 3]));
+/// let small = phalanx_segmentation::downsample(&halves, 2, 2)?;
+/// assert_eq!((small[(0, 0)].0, small[(1, 0)].0), ([150; 3], [100; 3]));
+/// # Ok::<(), phalanx_segmentation::Error>(())
+/// ```
 pub fn downsample(image: &RgbImage, width: u32, height: u32) -> Result<RgbImage> {
     let window = CropWindow::centred(image.dimensions(), (width, height))?;
     let mut target = RgbImage::new(width, height);

@@ -68,6 +68,23 @@ impl HandFinder {
     ///
     /// # Errors
     /// Unusable `cleanup`, an image without pixels, or nothing as large as a hand.
+    ///
+    /// ```
+    /// use image::{GrayImage, Luma};
+    /// use phalanx_segmentation::{Cleanup, HandFinder, WristModel};
+    ///
+    /// // A palm on an arm that comes from below.
+    /// let mask = GrayImage::from_fn(160, 120, |x, y| {
+    ///     let (dx, dy) = (x as f64 - 79.5, y as f64 - 40.0);
+    ///     let palm = (dx / 22.0).powi(2) + (dy / 30.0).powi(2) < 1.0;
+    ///     Luma([if palm || (dx.abs() < 12.0 && dy > 0.0) { 255 } else { 0 }])
+    /// });
+    /// let mut finder = HandFinder::default();
+    /// let hands = finder.find(&mask, &Cleanup::default(), WristModel::builtin())?;
+    /// assert!(hands[0].direction[1] < -0.9, "it points up");
+    /// assert_eq!(finder.isolate(&hands[0])[(79, 40)].0, [255]);
+    /// # Ok::<(), phalanx_segmentation::Error>(())
+    /// ```
     pub fn find(
         &mut self,
         mask: &GrayImage,

@@ -33,6 +33,19 @@ impl Default for Silhouette {
 impl Silhouette {
     /// The silhouette of a clean mask, at least [`MIN_SIDE`] pixels wide and high, in which hand is
     /// over 127. Of several components the largest is taken, as in [`clean`](crate::clean).
+    ///
+    /// ```
+    /// use image::{GrayImage, Luma};
+    /// use phalanx_segmentation::{Evidence, Silhouette};
+    ///
+    /// let mask = GrayImage::from_fn(40, 30, |x, y| {
+    ///     Luma([if (15..25).contains(&x) && y >= 10 { 255 } else { 0 }])
+    /// });
+    /// let silhouette = Silhouette::from_mask(&mask)?;
+    /// assert_eq!(silhouette.forearm.end, [20.0, 29.5]);
+    /// assert_eq!(silhouette.forearm.evidence, Evidence::Border);
+    /// # Ok::<(), phalanx_segmentation::Error>(())
+    /// ```
     pub fn from_mask(mask: &GrayImage) -> Result<Self> {
         let mut silhouette = Self::default();
         silhouette.extract_into(mask, &mut Workspace::default())?;

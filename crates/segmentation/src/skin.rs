@@ -75,6 +75,18 @@ pub struct SkinParts {
 /// The model that [`SkinModel::builtin`] returns is `SkinTrainer::default()` fed with every row of
 /// the data set that [`BUILTIN_SOURCE`] names and finished with that source; the order of the rows
 /// does not matter.
+///
+/// ```
+/// use phalanx_segmentation::{Label, SkinModel, SkinTrainer};
+///
+/// let mut trainer = SkinTrainer::default();
+/// trainer.add_pixel([205, 150, 125], Label::Skin);
+/// trainer.add_pixel([60, 120, 200], Label::NonSkin);
+/// let model = trainer.finish("two pixels")?;
+/// assert!(model.is_skin([205, 150, 125]) && !model.is_skin([60, 120, 200]));
+/// assert_eq!(SkinModel::from_bytes(&model.to_bytes())?, model);
+/// # Ok::<(), phalanx_segmentation::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct SkinTrainer {
     params: SkinParams,
@@ -132,6 +144,16 @@ impl SkinTrainer {
 }
 
 /// Tells skin from anything else by its chroma: Bayes' rule on two smoothed histograms.
+///
+/// ```
+/// use image::{Rgb, RgbImage};
+/// use phalanx_segmentation::SkinModel;
+///
+/// let mut picture = RgbImage::from_pixel(4, 3, Rgb([90, 120, 160]));
+/// picture.put_pixel(2, 1, Rgb([205, 150, 125]));
+/// let mask = SkinModel::builtin().segment(&picture);
+/// assert_eq!((mask[(2, 1)].0, mask[(0, 0)].0), ([255], [0]));
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SkinParts", into = "SkinParts")]
 pub struct SkinModel {

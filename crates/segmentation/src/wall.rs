@@ -26,6 +26,18 @@ const DARKEST: f32 = 32.0;
 impl Wall {
     /// The mask of the hand, 255 in it and 0 elsewhere, as large as the image. The wall's colour is
     /// the median along the image border, and the threshold is Otsu's.
+    ///
+    /// ```
+    /// use image::{Rgb, RgbImage};
+    /// use phalanx_segmentation::Wall;
+    ///
+    /// let picture = RgbImage::from_fn(40, 30, |x, y| {
+    ///     Rgb(if (15..25).contains(&x) && y >= 10 { [200, 140, 110] } else { [230, 230, 228] })
+    /// });
+    /// let mask = Wall::Bright.segment(&picture)?;
+    /// assert_eq!((mask[(20, 20)].0, mask[(2, 2)].0), ([255], [0]));
+    /// # Ok::<(), phalanx_segmentation::Error>(())
+    /// ```
     pub fn segment(self, image: &RgbImage) -> Result<GrayImage> {
         let (width, height) = image.dimensions();
         if width == 0 || height == 0 {

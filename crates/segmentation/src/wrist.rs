@@ -76,6 +76,15 @@ impl WristModel {
     ///
     /// # Errors
     /// Anything else, with the line at fault.
+    ///
+    /// ```
+    /// use phalanx_segmentation::WristModel;
+    ///
+    /// let bytes = WristModel::builtin().to_bytes();
+    /// assert_eq!(WristModel::from_bytes(&bytes)?.to_bytes(), bytes);
+    /// assert!(WristModel::from_bytes(b"a palm").is_err());
+    /// # Ok::<(), phalanx_segmentation::Error>(())
+    /// ```
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let error = |line, reason| Error::WristModel { line, reason };
         let text = std::str::from_utf8(bytes).map_err(|_| error(1, "the text is not UTF-8"))?;

@@ -39,6 +39,15 @@ const TIE: f64 = 1e-9;
 ///
 /// # Errors
 /// Too few or too many points, a coordinate out of range, or all points on the forearm's end.
+///
+/// ```
+/// use phalanx_shape_context::hand_axis;
+///
+/// let finger = [[4.0, 9.0], [4.0, 2.0], [5.0, 0.0], [6.0, 2.0], [6.0, 9.0]];
+/// let axis = hand_axis(&finger, [5.0, 9.0])?;
+/// assert_eq!((axis.tip, axis.tip_index, axis.direction()), ([5.0, 0.0], 2, [0.0, -1.0]));
+/// # Ok::<(), phalanx_shape_context::Error>(())
+/// ```
 pub fn hand_axis(points: &[[f64; 2]], forearm_end: [f64; 2]) -> Result<Axis> {
     check_points(points)?;
     if !in_range(forearm_end) {

@@ -113,6 +113,20 @@ impl Side {
 /// # Errors
 /// Too few or too many points, a coordinate out of range, sides in one place or without a point
 /// along them.
+///
+/// ```
+/// use phalanx_shape_context::forearm_axis;
+///
+/// // An arm 8 px wide, upwards from the picture's lower border; its hand leans to the right.
+/// let left = (0..40).rev().map(|y| [10.0, f64::from(y)]);
+/// let hand = [[12.0, -6.0], [24.0, -20.0], [20.0, -4.0]];
+/// let right = (0..40).map(|y| [18.0, f64::from(y)]);
+/// let contour: Vec<_> = left.chain(hand).chain(right).collect();
+/// let axis = forearm_axis(&contour, [[10.0, 40.0], [18.0, 40.0]])?;
+/// assert!((axis.width - 8.0).abs() < 1e-6 && (axis.direction[1] + 1.0).abs() < 1e-6);
+/// assert!(axis.is_ahead([14.0, 39.0]) && !axis.is_ahead([14.0, 41.0]));
+/// # Ok::<(), phalanx_shape_context::Error>(())
+/// ```
 pub fn forearm_axis(points: &[[f64; 2]], sides: [[f64; 2]; 2]) -> Result<ForearmAxis> {
     check_points(points)?;
     if let Some([x, y]) = sides.into_iter().find(|&side| !in_range(side)) {

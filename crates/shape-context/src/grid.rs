@@ -37,6 +37,10 @@ const TAN_60: f64 = 1.732_050_807_568_877_2;
 const HAIR: f64 = 1e-9;
 
 /// The outer radii of the rings for a mean distance μ, in its unit: μ/8, μ/4, μ/2, μ, 2μ.
+///
+/// ```
+/// assert_eq!(phalanx_shape_context::ring_radii(40.0), [5.0, 10.0, 20.0, 40.0, 80.0]);
+/// ```
 pub fn ring_radii(mean_distance: f64) -> [f64; RINGS] {
     [0.125, 0.25, 0.5, 1.0, 2.0].map(|octave| octave * mean_distance)
 }
@@ -44,6 +48,11 @@ pub fn ring_radii(mean_distance: f64) -> [f64; RINGS] {
 /// Where each sector begins, in radians from the axis, turning from +x towards +y: 7.5° + 30°k.
 ///
 /// Sector `k` reaches from edge `k` to edge `k + 1`; the last one ends where the first begins.
+///
+/// ```
+/// let edges = phalanx_shape_context::sector_edges().map(f64::to_degrees);
+/// assert!((edges[0] - 7.5).abs() < 1e-9 && (edges[11] - 337.5).abs() < 1e-9);
+/// ```
 pub fn sector_edges() -> [f64; SECTORS] {
     std::array::from_fn(|k| OFFSET + SECTOR * k as f64)
 }

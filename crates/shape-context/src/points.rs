@@ -16,6 +16,13 @@ pub const MIN_MEAN_DISTANCE: f64 = 1e-9;
 ///
 /// # Errors
 /// Too few or too many points, a coordinate out of range, or all points in one place.
+///
+/// ```
+/// // The three sides of a triangle.
+/// let mean = phalanx_shape_context::mean_distance(&[[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]])?;
+/// assert!((mean - 4.0).abs() < 1e-12);
+/// # Ok::<(), phalanx_shape_context::Error>(())
+/// ```
 pub fn mean_distance(points: &[[f64; 2]]) -> Result<f64> {
     let mut columns = Columns::default();
     columns.load(points)?;

@@ -15,6 +15,16 @@ const SMOOTHINGS: usize = 2;
 /// # Errors
 /// A coordinate out of range, a step that is not positive, or one so small that there would be more
 /// than [`MAX_POINTS`] points.
+///
+/// ```
+/// use phalanx_shape_context::{Chain, resample};
+///
+/// let diagonal: Vec<_> = (0..=30).map(|i| [f64::from(i), f64::from(i)]).collect();
+/// let mut points = Vec::new();
+/// resample(&diagonal, Chain::Open, 1.0, &mut points)?;
+/// assert_eq!(points.len(), 43); // 30 √2 px long, one pixel apart, both ends kept
+/// # Ok::<(), phalanx_shape_context::Error>(())
+/// ```
 pub fn resample(
     points: &[[f64; 2]],
     chain: Chain,

@@ -75,6 +75,20 @@ impl ShapeContexts {
     /// # Errors
     /// Too few or too many points, coordinates out of range, all points in one place, a point that
     /// sees no other, or an orientation that the contour does not define.
+    ///
+    /// ```
+    /// use phalanx_shape_context::{BINS, Orientation, ShapeContexts};
+    ///
+    /// let square = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]];
+    /// let mut contexts = ShapeContexts::new();
+    /// let first = contexts.compute(&square, Orientation::ImageAxes)?.values().to_vec();
+    /// // Neither place nor size matters.
+    /// let moved = square.map(|[x, y]| [2.0 * x + 50.0, 2.0 * y + 70.0]);
+    /// let found = contexts.compute(&moved, Orientation::ImageAxes)?;
+    /// assert_eq!(found.values(), first);
+    /// assert!(found.rows().all(|row| row.len() == BINS && (row.iter().sum::<f32>() - 1.0).abs() < 1e-6));
+    /// # Ok::<(), phalanx_shape_context::Error>(())
+    /// ```
     pub fn compute(
         &mut self,
         points: &[[f64; 2]],

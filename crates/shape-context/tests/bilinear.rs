@@ -94,11 +94,3 @@ fn what_is_no_context_is_refused() {
         "bin 0 of context 1 is NaN: heights are finite and not negative"
     );
 }
-
-#[test]
-fn workspaces_can_be_shared_between_threads() {
-    fn shared<T: Send + Sync>() {}
-    shared::<ShapeContexts>();
-    shared::<Matcher>();
-    shared::<phalanx_shape_context::Error>();
-}
