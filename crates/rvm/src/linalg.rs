@@ -11,19 +11,54 @@ use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
 use faer::prelude::{Reborrow, ReborrowMut};
-use faer::{Accum, Mat, MatRef, Par, Spec};
+use faer::{Accum, Mat, MatMut, MatRef, Par, Spec};
 use rayon::prelude::*;
 
 use crate::{Error, Result};
 
 /// Columns of a product that one task computes.
 const BLOCK: usize = 96;
+/// Multiplications in a product up to which it is small.
+const SMALL: usize = 1 << 19;
+/// Multiplications in a tile of a small product, and most columns and depth of one.
+const TILE: usize = 16 * 16 * 16;
+const TILE_COLUMNS: usize = 4;
+const TILE_DEPTH: usize = 64;
 
 /// A·B.
 pub(crate) fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
     let mut out = Mat::zeros(a.nrows(), b.ncols());
-    matmul(out.as_mut(), Accum::Replace, a, b, 1.0, Par::Seq);
+    multiply(out.as_mut(), a, b);
     out
+}
+
+/// A·B into `out`, all zeros.
+///
+/// For a product of more multiplications than a tile has, faer sets aside twice the processor's
+/// last cache in every thread. A small one is therefore cut into tiles, for a third more time.
+fn multiply(mut out: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+    let ((m, k), n) = (a.shape(), b.ncols());
+    if m * n * k > SMALL {
+        matmul(out, Accum::Replace, a, b, 1.0, Par::Seq);
+        return;
+    }
+    let by_columns = a.to_owned();
+    let depth = k.clamp(1, TILE_DEPTH);
+    for (j, columns) in cut(n, TILE_COLUMNS) {
+        for (i, rows) in cut(m, TILE / (TILE_COLUMNS * depth)) {
+            let mut out = out.rb_mut().submatrix_mut(i, j, rows, columns);
+            for (l, depth) in cut(k, depth) {
+                let a = by_columns.submatrix(i, l, rows, depth);
+                let b = b.submatrix(l, j, depth, columns);
+                matmul(out.rb_mut(), Accum::Add, a, b, 1.0, Par::Seq);
+            }
+        }
+    }
+}
+
+/// Where the pieces of a whole start, and their sizes.
+fn cut(whole: usize, size: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..whole).step_by(size).map(move |start| (start, size.min(whole - start)))
 }
 
 /// XᵀX, exactly symmetric.
@@ -38,7 +73,7 @@ pub(crate) fn gram(x: MatRef<'_, f64>) -> Mat<f64> {
         let width = columns.ncols();
         let below = columns.rb_mut().subrows_mut(start, p - start);
         let lhs = x.subcols(start, p - start).transpose();
-        matmul(below, Accum::Replace, lhs, x.subcols(start, width), 1.0, Par::Seq);
+        multiply(below, lhs, x.subcols(start, width));
     });
     for j in 1..p {
         for i in 0..j {

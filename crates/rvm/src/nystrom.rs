@@ -11,7 +11,8 @@ use crate::{Columns, Error, Fit, Kernel, Model, Report, Result, Trace, Width, ch
 
 /// Added to the kernel's diagonal of ones. Where the centres' Gaussians depend on each other,
 /// whitening divides the rounding of G by this: a smaller one leaves small λ unsolvable for many
-/// centres among few inputs. It moves predictions by at most about its share of λ.
+/// centres among few inputs. It moves no target's fitted values by more than its share of λ of the
+/// target's own norm; between the samples they may move some times as much.
 const JITTER: f64 = 1e-6;
 /// Samples that `fit` adds at a time.
 const BATCH: usize = 4096;
