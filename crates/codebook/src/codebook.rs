@@ -151,7 +151,7 @@ impl Codebook {
 pub(crate) fn first_equal(distances: &[f32], smallest: f32) -> usize {
     let (blocks, _) = distances.as_chunks::<LANES>();
     // A whole block at once, without a branch for each distance.
-    let is_in = |block: &Lanes| block.iter().fold(false, |found, &d| found | (d == smallest));
+    let is_in = |block: &Lanes| block.iter().filter(|&&d| d == smallest).count() > 0;
     let block = blocks.iter().position(is_in).unwrap_or_default();
     let lane = blocks[block].iter().position(|&d| d == smallest).unwrap_or_default();
     block * LANES + lane

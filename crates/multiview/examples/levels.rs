@@ -62,7 +62,7 @@ fn sample(angle: f64) -> Sample {
     let seen = |view: usize, point: usize| {
         let across =
             (angle + 0.012 * (point * point) as f64 - TAU * view as f64 / VIEWS as f64).cos();
-        let at = (across + 1.0) / 2.0 * (BINS - 1) as f64;
+        let at = f64::midpoint(across, 1.0) * (BINS - 1) as f64;
         let heights: Vec<f64> = (0..BINS).map(|bin| (-(bin as f64 - at).powi(2)).exp()).collect();
         let sum: f64 = heights.iter().sum();
         heights.into_iter().map(move |height| (height / sum) as f32)
