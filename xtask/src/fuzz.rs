@@ -1,4 +1,4 @@
-//! `cargo xtask fuzz`: feeds damaged files to everything that reads files.
+//! `cargo xtask fuzz`: feeds damaged files to everything that reads files. Writes docs/fuzzing.md.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -8,6 +8,8 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 
 use crate::files;
+
+const PAGE: &str = "docs/fuzzing.md";
 
 /// What no target may ask for at once, MiB.
 const MOST_ALLOCATED_MIB: usize = 64;
@@ -28,35 +30,65 @@ pub(crate) struct Arguments {
     /// fuzz/corpus, and the inputs that crash.
     #[arg(long, value_name = "DIR", default_value = "target/fuzz-found")]
     out: PathBuf,
+    /// Fuzz nothing: only write the page anew, of what is in DIR.
+    #[arg(long)]
+    report: bool,
 }
 
-/// What became of a target.
+/// What the last run of a target came to.
 struct Outcome {
-    target: String,
-    executions: String,
-    peak_mib: String,
-    is_sound: bool,
+    executions: usize,
+    /// Of the fuzzer as a whole.
+    peak_mib: usize,
+    /// How it ended, if an input crashed it, took too long or asked for too much memory.
+    found: Option<String>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let programs = build()?;
-    let targets = match arguments.targets[..] {
-        [] => names(&files::in_repository("fuzz/fuzz_targets"))?,
-        _ => arguments.targets.clone(),
-    };
-    let mut table = String::from("| target | executions | peak memory, MiB | crashes, hangs |\n");
-    table += "|---|--:|--:|---|\n";
-    let mut all_sound = true;
-    for target in &targets {
-        let outcome = fuzz(target, &programs, arguments).with_context(|| target.clone())?;
-        let found = if outcome.is_sound { "none" } else { "found" };
-        let Outcome { target, executions, peak_mib, .. } = &outcome;
-        writeln!(table, "| {target} | {executions} | {peak_mib} | {found} |")?;
-        all_sound &= outcome.is_sound;
+    let all = names(&files::in_repository("fuzz/fuzz_targets"))?;
+    let targets = if arguments.targets.is_empty() { &all } else { &arguments.targets };
+    if !arguments.report {
+        let programs = build()?;
+        for target in targets {
+            fuzz(target, &programs, arguments).with_context(|| target.clone())?;
+        }
     }
-    files::print(&table)?;
-    ensure!(all_sound, "what was found is in {}", arguments.out.display());
+    let mut outcomes = Vec::new();
+    for target in &all {
+        let log = log_path(target, arguments);
+        let outcome = if log.exists() { Some(Outcome::read(&log)?) } else { None };
+        outcomes.push((target.as_str(), outcome));
+    }
+    let page = page(&outcomes)?;
+    files::print(&page)?;
+    files::write_whole(&files::in_repository(PAGE), page.as_bytes())?;
+    let is_sound = |(_, outcome): &(_, Option<Outcome>)| {
+        outcome.as_ref().is_none_or(|outcome| outcome.found.is_none())
+    };
+    ensure!(outcomes.iter().all(is_sound), "what was found is in {}", arguments.out.display());
     Ok(())
+}
+
+fn page(outcomes: &[(&str, Option<Outcome>)]) -> Result<String> {
+    let mut page = format!(
+        "<!-- Written by `cargo xtask fuzz`; not to be edited. -->\n# Fuzzing\n\n\
+         Damaged files, made by libFuzzer from those of `fuzz/corpus`, for everything that is read\n\
+         from files. An input is found if it crashes the target, takes longer than \
+         {MOST_SECONDS} s, or asks for\nmore than {MOST_ALLOCATED_MIB} MiB at once. \
+         Executions are those of each target's last run; the memory is the\nfuzzer's as a whole, \
+         with all inputs that it keeps.\n\n\
+         | target | executions | peak memory, MiB | found |\n|---|--:|--:|---|\n"
+    );
+    for (target, outcome) in outcomes {
+        match outcome {
+            Some(Outcome { executions, peak_mib, found }) => {
+                let found = found.as_deref().unwrap_or("nothing");
+                writeln!(page, "| {target} | {executions} | {peak_mib} | {found} |")?;
+            }
+            None => writeln!(page, "| {target} | not run | | |")?,
+        }
+    }
+    Ok(page)
 }
 
 /// Compiles the targets; returns the folder of their programs.
@@ -88,12 +120,17 @@ fn names(folder: &Path) -> Result<Vec<String>> {
     Ok(names)
 }
 
-fn fuzz(target: &str, programs: &Path, arguments: &Arguments) -> Result<Outcome> {
+fn log_path(target: &str, arguments: &Arguments) -> PathBuf {
+    arguments.out.join(target).with_added_extension("log")
+}
+
+/// Runs a target, whose log says what it came to.
+fn fuzz(target: &str, programs: &Path, arguments: &Arguments) -> Result<()> {
     eprintln!("fuzzing {target}");
     let inputs = arguments.out.join(target);
     std::fs::create_dir_all(&inputs).with_context(|| inputs.display().to_string())?;
-    let log_path = arguments.out.join(target).with_added_extension("log");
-    let log = std::fs::File::create(&log_path).with_context(|| log_path.display().to_string())?;
+    let log = log_path(target, arguments);
+    let log = std::fs::File::create(&log).with_context(|| log.display().to_string())?;
     let mut program = Command::new(programs.join(target));
     program
         .args([&inputs, &files::in_repository("fuzz/corpus").join(target)])
@@ -105,19 +142,24 @@ fn fuzz(target: &str, programs: &Path, arguments: &Arguments) -> Result<Outcome>
         .arg("-print_final_stats=1")
         .stdout(Stdio::null())
         .stderr(log);
-    let status = program.status().context("starting the target")?;
-    let log = std::fs::read(&log_path).context("reading the log")?;
-    let log = String::from_utf8_lossy(&log);
-    let statistic = |name: &str| {
-        let value = log.lines().find_map(|line| line.strip_prefix(name));
-        Ok::<_, anyhow::Error>(
-            value.with_context(|| format!("no {name} in the log"))?.trim().to_owned(),
-        )
-    };
-    Ok(Outcome {
-        target: target.to_owned(),
-        executions: statistic("stat::number_of_executed_units:")?,
-        peak_mib: statistic("stat::peak_rss_mb:")?,
-        is_sound: status.success(),
-    })
+    program.status().context("starting the target")?;
+    Ok(())
+}
+
+impl Outcome {
+    fn read(path: &Path) -> Result<Self> {
+        let log = std::fs::read(path).with_context(|| path.display().to_string())?;
+        let log = String::from_utf8_lossy(&log);
+        let after = |start: &str| log.lines().find_map(|line| line.strip_prefix(start));
+        let statistic = |name: &str| {
+            let value = after(&format!("stat::{name}:"));
+            let value = value.with_context(|| format!("{}: no {name}", path.display()))?;
+            value.trim().parse().with_context(|| format!("{}: {name}", path.display()))
+        };
+        Ok(Self {
+            executions: statistic("number_of_executed_units")?,
+            peak_mib: statistic("peak_rss_mb")?,
+            found: after("SUMMARY: ").map(str::to_owned),
+        })
+    }
 }
