@@ -215,3 +215,24 @@ pub(crate) fn centre(columns: &mut Mat<f64>) -> Vec<f64> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By a vector, tiny, small with tiles that are not full, and large.
+    #[test]
+    fn products_of_every_size_are_those_of_their_definition() {
+        for (m, k, n) in [(40, 50, 1), (3, 4, 5), (37, 130, 9), (300, 2, 30), (90, 80, 100)] {
+            let wave = |i: usize, j: usize| (0.7 * i as f64 + 1.3 * j as f64).sin();
+            let (a, by_rows) = (Mat::from_fn(m, k, wave), Mat::from_fn(k, m, |i, j| wave(j, i)));
+            let b = Mat::from_fn(k, n, |i, j| wave(j, 3 * i));
+            let expected =
+                Mat::from_fn(m, n, |i, j| (0..k).map(|l| a[(i, l)] * b[(l, j)]).sum::<f64>());
+            for a in [a.as_ref(), by_rows.transpose()] {
+                let difference: Mat<f64> = product(a, b.as_ref()) - &expected;
+                assert!(difference.norm_max() < 1e-12 * k as f64, "{m} {k} {n}");
+            }
+        }
+    }
+}
