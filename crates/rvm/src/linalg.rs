@@ -6,6 +6,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{self, LltRegularization};
 use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
 use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_inverse::invert_lower_triangular;
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
@@ -35,15 +36,17 @@ pub(crate) fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
 /// A·B into `out`, all zeros.
 ///
 /// For a product of more multiplications than a tile has, faer sets aside twice the processor's
-/// last cache in every thread. A small one is therefore cut into tiles, for a third more time.
+/// last cache in every thread, unless it is by a vector. A small one is therefore cut into tiles, for
+/// a third more time.
 fn multiply(mut out: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
     let ((m, k), n) = (a.shape(), b.ncols());
-    if m * n * k > SMALL {
+    let by_a_vector = m.min(k).min(n) <= 1;
+    if by_a_vector || !(TILE..SMALL).contains(&(m * k * n)) {
         matmul(out, Accum::Replace, a, b, 1.0, Par::Seq);
         return;
     }
     let by_columns = a.to_owned();
-    let depth = k.clamp(1, TILE_DEPTH);
+    let depth = k.min(TILE_DEPTH);
     for (j, columns) in cut(n, TILE_COLUMNS) {
         for (i, rows) in cut(m, TILE / (TILE_COLUMNS * depth)) {
             let mut out = out.rb_mut().submatrix_mut(i, j, rows, columns);
@@ -59,6 +62,28 @@ fn multiply(mut out: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
 /// Where the pieces of a whole start, and their sizes.
 fn cut(whole: usize, size: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..whole).step_by(size).map(move |start| (start, size.min(whole - start)))
+}
+
+/// A·v.
+pub(crate) fn times(a: MatRef<'_, f64>, v: &[f64]) -> Vec<f64> {
+    product(a, MatRef::from_column_major_slice(v, v.len(), 1)).col_as_slice(0).to_vec()
+}
+
+/// A·U for an upper triangular U.
+pub(crate) fn times_upper(a: MatRef<'_, f64>, u: MatRef<'_, f64>) -> Mat<f64> {
+    let mut out = Mat::zeros(a.nrows(), u.ncols());
+    triangular::matmul(
+        out.as_mut(),
+        BlockStructure::Rectangular,
+        Accum::Replace,
+        a,
+        BlockStructure::Rectangular,
+        u,
+        BlockStructure::TriangularUpper,
+        1.0,
+        Par::Seq,
+    );
+    out
 }
 
 /// XᵀX, exactly symmetric.
@@ -177,21 +202,6 @@ pub(crate) fn axpy(y: &mut [f64], s: f64, x: &[f64]) {
     }
 }
 
-/// y −= Σₖ cₖ xₖ, four at a time: y is then read and written a quarter as often.
-pub(crate) fn subtract_products(y: &mut [f64], c: &[f64], x: &[&[f64]]) {
-    let (whole, rest) = x.as_chunks::<4>();
-    let (by_four, last) = c.as_chunks::<4>();
-    for (&[a, b, c, d], [p, q, r, s]) in by_four.iter().zip(whole) {
-        let columns = p.iter().zip(*q).zip(r.iter().zip(*s));
-        for (y, ((p, q), (r, s))) in y.iter_mut().zip(columns) {
-            *y -= (a * p + b * q) + (c * r + d * s);
-        }
-    }
-    for (c, x) in last.iter().zip(rest) {
-        axpy(y, -c, x);
-    }
-}
-
 /// Subtracts its mean from each column; returns the means.
 pub(crate) fn centre(columns: &mut Mat<f64>) -> Vec<f64> {
     (0..columns.ncols())
@@ -204,4 +214,25 @@ pub(crate) fn centre(columns: &mut Mat<f64>) -> Vec<f64> {
             mean
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By a vector, tiny, small with tiles that are not full, and large.
+    #[test]
+    fn products_of_every_size_are_those_of_their_definition() {
+        for (m, k, n) in [(40, 50, 1), (3, 4, 5), (37, 130, 9), (300, 2, 30), (90, 80, 100)] {
+            let wave = |i: usize, j: usize| (0.7 * i as f64 + 1.3 * j as f64).sin();
+            let (a, by_rows) = (Mat::from_fn(m, k, wave), Mat::from_fn(k, m, |i, j| wave(j, i)));
+            let b = Mat::from_fn(k, n, |i, j| wave(j, 3 * i));
+            let expected =
+                Mat::from_fn(m, n, |i, j| (0..k).map(|l| a[(i, l)] * b[(l, j)]).sum::<f64>());
+            for a in [a.as_ref(), by_rows.transpose()] {
+                let difference: Mat<f64> = product(a, b.as_ref()) - &expected;
+                assert!(difference.norm_max() < 1e-12 * k as f64, "{m} {k} {n}");
+            }
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Taking steps until none gains, and starting again nearby.
 
-use super::{Change, Evidence, Targets};
+use super::{Evidence, Targets};
 use crate::{Error, Progress, Result, Trace, check};
 
 /// Steps between two computations from scratch, besides one for each active column: then the
@@ -62,13 +62,10 @@ impl Ascent {
             observe(progress);
         })?;
         for round in 0..self.restarts {
-            if best.active.is_empty() || !converged {
+            if best.active.len() == 0 || !converged {
                 break;
             }
-            let mut other = best.clone();
-            for column in neighbours(&best, round) {
-                other.take(Change::Precision { column, alpha: f64::INFINITY });
-            }
+            let mut other = best.without(&neighbours(&best, round))?;
             converged = self.climb(&mut other, &mut left, observe)?;
             if other.objective() > best.objective() + self.tolerance {
                 objective.push(other.value());
@@ -114,9 +111,10 @@ impl Ascent {
 /// An active column and those most correlated with it: another one in every round.
 fn neighbours(evidence: &Evidence<'_>, round: usize) -> Vec<usize> {
     // By their precisions, so that the order of the samples does not matter.
-    let mut places: Vec<usize> = (0..evidence.active.len()).collect();
-    places.sort_by(|&a, &b| evidence.alpha[a].total_cmp(&evidence.alpha[b]));
-    let mut columns: Vec<usize> = places.into_iter().map(|i| evidence.active[i]).collect();
+    let (active, alpha) = evidence.active();
+    let mut places: Vec<usize> = (0..active.len()).collect();
+    places.sort_by(|&a, &b| alpha[a].total_cmp(&alpha[b]));
+    let mut columns: Vec<usize> = places.into_iter().map(|i| active[i]).collect();
     // Steps of the golden section visit them evenly, whatever their number.
     let share = (round as f64 * 0.618_033_988_749_894_9).fract();
     let middle = columns[(share * columns.len() as f64) as usize];

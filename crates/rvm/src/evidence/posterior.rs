@@ -18,9 +18,9 @@ pub(super) struct Posterior {
 
 impl Evidence<'_> {
     pub(super) fn posterior(&self) -> Result<Posterior> {
-        let size = self.active.len();
-        let d: Vec<f64> = self.alpha.iter().map(|a| a.sqrt().recip()).collect();
-        let gram = linalg::submatrix(self.targets.gram.as_ref(), &self.active);
+        let (size, columns) = (self.active.len(), &self.active.columns);
+        let d: Vec<f64> = self.active.alpha.iter().map(|a| a.sqrt().recip()).collect();
+        let gram = linalg::subrows(self.active.gram.as_ref(), columns);
         let system = Mat::from_fn(size, size, |i, j| {
             let unit = if i == j { 1.0 } else { 0.0 };
             d[i] * gram[(i, j)] * d[j] + unit
@@ -30,7 +30,7 @@ impl Evidence<'_> {
         for (j, d) in d.iter().enumerate() {
             factor.col_as_slice_mut(j).iter_mut().for_each(|v| *v *= d);
         }
-        let correlations = linalg::subrows(self.targets.correlations, &self.active);
+        let correlations = linalg::subrows(self.targets.correlations, columns);
         let half = linalg::product(factor.as_ref(), correlations.as_ref());
         let mu = linalg::product(factor.transpose(), half.as_ref());
         let explained = half.col_iter().map(|column| column.squared_norm_l2());
@@ -45,15 +45,17 @@ impl Evidence<'_> {
     pub(super) fn refresh(&mut self) -> Result<()> {
         let Posterior { factor, mu, misfit, log_determinant } = self.posterior()?;
         let gram = self.targets.gram;
-        let rows = Mat::from_fn(self.active.len(), gram.ncols(), |i, k| gram[(k, self.active[i])]);
-        let overlap = linalg::product(factor.as_ref(), rows.as_ref());
         for (k, s) in self.sparsity.iter_mut().enumerate() {
-            *s = gram[(k, k)] - overlap.col(k).squared_norm_l2();
+            *s = gram[(k, k)];
         }
-        self.quality = self.targets.correlations - linalg::product(rows.transpose(), mu.as_ref());
-        let sigma = linalg::gram(factor.as_ref());
-        self.sigma = sigma.col_iter().map(|row| row.iter().copied().collect()).collect();
-        self.mu = mu.row_iter().map(|row| row.iter().copied().collect()).collect();
+        let overlap = linalg::times_upper(self.active.gram.as_ref(), factor.transpose());
+        for column in overlap.col_iter() {
+            self.sparsity.iter_mut().zip(column.iter()).for_each(|(s, c)| *s -= c * c);
+        }
+        self.quality =
+            self.targets.correlations - linalg::product(self.active.gram.as_ref(), mu.as_ref());
+        self.active.sigma = linalg::gram(factor.as_ref());
+        self.active.mu = mu.transpose().to_owned();
         self.misfit = misfit;
         self.log_determinant = log_determinant;
         self.stale = 0;

@@ -5,6 +5,8 @@ use faer::{Mat, MatRef};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
+use super::active::Active;
+use super::steps::Change;
 use super::*;
 
 /// S, Q, log evidence and the noise at which it is greatest.
@@ -19,7 +21,7 @@ impl Direct {
     fn new(evidence: &Evidence<'_>, phi: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Self {
         let n = phi.nrows();
         let mut c = Mat::<f64>::identity(n, n);
-        for (&k, alpha) in evidence.active.iter().zip(&evidence.alpha) {
+        for (&k, alpha) in evidence.active.columns.iter().zip(&evidence.active.alpha) {
             c += phi.col(k) * phi.col(k).transpose() / faer::Scale(*alpha);
         }
         let lu = c.full_piv_lu();
@@ -54,7 +56,7 @@ fn every_step_keeps_what_a_full_recomputation_gives() {
     let phi = centred(n, p, &mut random);
     let mix = centred(p, m, &mut random);
     let y = &phi * mix + centred(n, m, &mut random);
-    let (gram, correlations) = (linalg::gram(phi.as_ref()), phi.transpose() * &y);
+    let (gram, correlations) = (crate::linalg::gram(phi.as_ref()), phi.transpose() * &y);
     let energies: Vec<f64> = y.col_iter().map(|target| target.squared_norm_l2()).collect();
     let targets = Targets {
         gram: &gram,
@@ -68,7 +70,7 @@ fn every_step_keeps_what_a_full_recomputation_gives() {
     for round in 0..90 {
         // Any step will do, not only the best: here a column at a time, at varying precisions.
         let column = round * 5 % p;
-        let active = evidence.position[column].is_some();
+        let active = evidence.active.position(column).is_some();
         let delete = active && round % 3 == 0;
         let alpha = if delete { f64::INFINITY } else { 0.1 + f64::from(round as u32 * 7 % 11) };
         evidence.take(Change::Precision { column, alpha });
@@ -86,10 +88,12 @@ fn every_step_keeps_what_a_full_recomputation_gives() {
             assert!((0..m).all(|j| close(evidence.quality[(k, j)], direct.quality[(k, j)])));
         }
         let posterior = evidence.posterior().unwrap();
-        let sigma = linalg::gram(posterior.factor.as_ref());
-        for (i, (row, mu)) in evidence.sigma.iter().zip(&evidence.mu).enumerate() {
-            assert!(row.iter().zip(sigma.col_as_slice(i)).all(|(a, b)| close(*a, *b)));
-            assert!(mu.iter().zip(posterior.mu.row(i).iter()).all(|(a, b)| close(*a, *b)));
+        let sigma = crate::linalg::gram(posterior.factor.as_ref());
+        let Active { sigma: carried, mu, .. } = &evidence.active;
+        for i in 0..carried.ncols() {
+            let rows = carried.col_as_slice(i).iter().zip(sigma.col_as_slice(i));
+            assert!(rows.into_iter().all(|(a, b)| close(*a, *b)));
+            assert!(mu.col(i).iter().zip(posterior.mu.row(i).iter()).all(|(a, b)| close(*a, *b)));
         }
     }
     assert!(added > 10 && changed > 10 && deleted > 10, "{added} {changed} {deleted}");
@@ -102,7 +106,7 @@ fn a_step_gains_what_it_says() {
     let (n, p, m) = (30, 15, 2);
     let phi = centred(n, p, &mut random);
     let y = phi.subcols(0, m) * faer::Scale(3.0) + centred(n, m, &mut random);
-    let (gram, correlations) = (linalg::gram(phi.as_ref()), phi.transpose() * &y);
+    let (gram, correlations) = (crate::linalg::gram(phi.as_ref()), phi.transpose() * &y);
     let energies: Vec<f64> = y.col_iter().map(|target| target.squared_norm_l2()).collect();
     let targets = Targets {
         gram: &gram,
