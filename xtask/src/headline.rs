@@ -129,6 +129,7 @@ fn refined(rows: &[Row]) -> Result<String> {
             let cells = METHODS.map(|method| row(method).map(error));
             let [estimated, refined, own] = cells;
             let (estimated, refined, own) = (estimated?, refined?, own?);
+            let tested = if views == 1 { tested } else { "" };
             writeln!(
                 table,
                 "| {tested} | {views} | {guess:.1}° | {estimated} | {refined} | {own} |"
