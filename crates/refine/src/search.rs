@@ -6,7 +6,7 @@ use phalanx_hand::{Digit, Dof, HandShape, Link, Pose, PosedHand, Primitive};
 
 use crate::touching;
 use crate::view::View;
-use crate::{Evidence, PosePrior, Result};
+use crate::{Error, Evidence, PosePrior, Result};
 
 /// Places in the range of each of a digit's first two flexions that are tried.
 const PLACES: usize = 6;
@@ -142,12 +142,14 @@ impl Search<'_> {
     /// A digit alone, in those postures that lie best within the observed silhouettes.
     fn drawn(&mut self, digit: Digit, pose: &Pose) -> Result<Vec<Drawn>> {
         let mut drawn = Vec::with_capacity(PLACES * PLACES);
-        for (places, pose) in self.postures(digit, pose) {
+        'postures: for (places, pose) in self.postures(digit, pose) {
             let own = solids(&self.hand.pose(&pose, self.rest), &[digit], Part::Digits);
             let mut images = vec![GrayImage::default(); self.views.len()];
             let mut outside = 0;
             for (v, image) in images.iter_mut().enumerate() {
-                self.draw(v, &own, image)?;
+                if !self.can_draw(v, &own, image)? {
+                    continue 'postures;
+                }
                 let seen = &self.evidence[v];
                 outside += difference([seen.mask(), seen.mask(), image], seen);
             }
@@ -230,7 +232,9 @@ impl Search<'_> {
             if cost >= limit {
                 break;
             }
-            self.draw(v, &own, &mut background.scratch)?;
+            if !self.can_draw(v, &own, &mut background.scratch)? {
+                return Ok(None);
+            }
             let differing = difference([other, other, &background.scratch], &self.evidence[v]);
             cost += PIXEL * f64::from(differing);
         }
@@ -241,6 +245,20 @@ impl Search<'_> {
         let moved: Vec<Primitive> =
             solids.iter().map(|solid| solid.moved(&self.motions[view])).collect();
         self.views[view].draw(&moved, &self.evidence[view], image)
+    }
+
+    /// Whether the view's camera can draw solids; draws them if so.
+    fn can_draw(
+        &mut self,
+        view: usize,
+        solids: &[Primitive],
+        image: &mut GrayImage,
+    ) -> Result<bool> {
+        match self.draw(view, solids, image) {
+            Ok(()) => Ok(true),
+            Err(Error::Render { .. }) => Ok(false),
+            Err(error) => Err(error),
+        }
     }
 }
 

@@ -76,6 +76,35 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(24) })]
+
+    /// One camera, and a start far from where the hand is: a long step may end behind the camera.
+    #[test]
+    fn steps_to_where_no_hand_can_be_drawn_are_not_taken(
+        off_mm in prop::array::uniform3(-250.0..250.0_f64),
+        off in prop::array::uniform3(-0.8..0.8_f64),
+    ) {
+        let (rig, hand) = (rig(), HandShape::adult());
+        let rest = rig.volume.rest_frame();
+        let truth = hand_bent_by([0.3, 0.5, 0.4, 0.6, 0.3], 0.6);
+        let evidence = see(&rig, &hand, &truth, &rest);
+        let mut start = truth;
+        let places = [Dof::TX, Dof::TY, Dof::TZ];
+        let turns = [Dof::ThetaX, Dof::ThetaY, Dof::ThetaZ];
+        let mut deviations = [0.3; Dof::COUNT];
+        for k in 0..3 {
+            start[places[k]] += off_mm[k];
+            start[turns[k]] += off[k];
+            deviations[places[k].index()] = 1e4;
+            deviations[turns[k].index()] = 3.0;
+        }
+        let prior = PosePrior::independent(start, &deviations).unwrap();
+        let refined = Refinement::default().run(&hand, &rest, &evidence[..1], &start, &prior);
+        prop_assert!(refined.is_ok(), "{refined:?}");
+    }
+}
+
 /// Where the pixels of an image of this width end that are told of.
 fn is_left_of(share: f64, width: u32) -> impl Fn(DVec2) -> bool + Copy {
     move |at| at.x < share * f64::from(width)
