@@ -137,9 +137,7 @@ impl Learning {
         let Ground { rig, hand, .. } = ground;
         let set = sets::random(rig, hand, self.scenes, self.augment);
         let part = self.training.shard(rig, hand, &set, Shard::WHOLE, progress)?;
-        progress.begin("fit the regressor", 1);
-        let estimator = part.finish()?;
-        progress.step();
+        let estimator = part.finish(progress)?;
         let fresh = sets::fresh(rig, hand, sets::ERROR_SCENES, self.augment);
         Ok(estimator.learn_errors(&fresh, progress)?)
     }

@@ -104,7 +104,7 @@ fn learn(ground: &Ground, samples: usize, progress: &dyn Progress) -> Result<Est
     let Ground { rig, hand, .. } = ground;
     let training = Training { framing: Framing::Window, ..PRESET.training() };
     let set = sets::for_preset(training.framing, rig, hand, samples);
-    let estimator = training.shard(rig, hand, &set, Shard::WHOLE, progress)?.finish()?;
+    let estimator = training.shard(rig, hand, &set, Shard::WHOLE, progress)?.finish(progress)?;
     let fresh = sets::fresh_for(training.framing, rig, hand);
     Ok(estimator.learn_errors(&fresh, progress)?)
 }

@@ -101,7 +101,7 @@ fn answers(
 ) -> Result<Vec<Answers>> {
     let train = sets::random(rig, hand, PRESET.scenes(), Augment::No);
     let part = PRESET.training().shard(rig, hand, &train, Shard::WHOLE, progress)?;
-    let estimator = part.finish()?;
+    let estimator = part.finish(progress)?;
     let fresh = sets::fresh(rig, hand, ERROR_SCENES, Augment::No);
     let estimator = estimator.learn_errors(&fresh, progress)?;
     let refiner = Refiner::new(rig, hand, &fresh.poses, Refinement::default())?;

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use phalanx::Part;
 
-use crate::train;
+use crate::{progress, train};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -31,7 +31,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             Some(merged) => merged.merge(part).with_context(name)?,
         }
     }
-    let estimator = merged.context("there is no part")?.finish()?;
+    let bar = progress::Bar::new();
+    let estimator = merged.context("there is no part")?.finish(&bar)?;
+    drop(bar);
     let estimator =
         if arguments.hypotheses { train::with_hypotheses(estimator)? } else { estimator };
     train::save(&estimator, &arguments.out)

@@ -197,20 +197,27 @@ fn stream(
 ) -> Result<()> {
     let bar = progress::Bar::new();
     let part = training.shard(rig, hand, set, arguments.shard.unwrap_or(Shard::WHOLE), &bar)?;
-    drop(bar);
-    if part.left_out() > 0 {
-        eprintln!("{} of {} samples could not be described", part.left_out(), set.count());
-    }
+    let left_out = part.left_out();
     if arguments.shard.is_none() {
         let out = arguments.out.as_deref().unwrap_or(MODEL.as_ref());
-        let estimator = part.finish()?;
+        let estimator = part.finish(&bar)?;
+        drop(bar);
+        say_left_out(left_out, set.count());
         let estimator = if arguments.hypotheses { with_hypotheses(estimator)? } else { estimator };
         return save(&estimator, out);
     }
+    drop(bar);
+    say_left_out(left_out, set.count());
     let out = arguments.out.as_deref().context("a shard has a place to go to")?;
     let bytes = part.to_bytes()?;
     files::write_whole(out, &bytes)?;
     files::print(&format!("{}: {} KiB\n", out.display(), bytes.len().div_ceil(1024)))
+}
+
+fn say_left_out(left_out: usize, all: usize) {
+    if left_out > 0 {
+        eprintln!("{left_out} of {all} samples could not be described");
+    }
 }
 
 /// An estimator that knows how it errs on what a preset learns from.

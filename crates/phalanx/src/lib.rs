@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod basis;
 mod container;
 mod coverage;
 mod damage;
@@ -8,6 +9,7 @@ mod describe;
 mod descriptor;
 mod error;
 mod estimator;
+mod gathered;
 mod global_pose;
 mod histograms;
 mod hypotheses;
@@ -45,7 +47,7 @@ pub use progress::{Progress, Silent};
 pub use random::ItemRandom;
 pub use refiner::Refiner;
 pub use regression::Regression;
-pub use regressor::{LearntMetric, Regressor};
+pub use regressor::{LearntMetric, NetworkTraining, Regressor};
 pub use scene::{EvenlySpaced, NominalScenes, Scene, Scenes, View};
 pub use shard::Shard;
 pub use training::{Description, Training, descriptors, targets};

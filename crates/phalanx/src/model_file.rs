@@ -4,13 +4,15 @@ use std::borrow::Cow;
 
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
-use phalanx_rvm::{ConditionalDensity, ConditionalDensityParts, Model, ModelParts, Projected};
+use phalanx_rvm::{
+    ConditionalDensity, ConditionalDensityParts, Model, ModelParts, NetworkOnComponents, Projected,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::container::Container;
 use crate::{Descriptor, Estimator, Regression, Result};
 
-const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 5 };
+const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 6 };
 
 /// What the payload holds.
 #[derive(Serialize, Deserialize)]
@@ -27,6 +29,7 @@ struct Payload<'a> {
 enum Stored<'a> {
     Joint(Cow<'a, ModelParts>),
     Projected(Cow<'a, Projected>),
+    Network(Cow<'a, NetworkOnComponents>),
 }
 
 impl Estimator {
@@ -42,6 +45,7 @@ impl Estimator {
             regression: match self.regression() {
                 Regression::Joint(model) => Stored::Joint(Cow::Borrowed(model.parts())),
                 Regression::Projected(models) => Stored::Projected(Cow::Borrowed(models)),
+                Regression::Network(own) => Stored::Network(Cow::Borrowed(own)),
             },
             errors: self.errors().map(|errors| Cow::Borrowed(errors.parts())),
         };
@@ -58,6 +62,7 @@ impl Estimator {
         let regression = match regression {
             Stored::Joint(parts) => Model::from_parts(parts.into_owned())?.into(),
             Stored::Projected(models) => Regression::Projected(models.into_owned()),
+            Stored::Network(own) => own.into_owned().into(),
         };
         let (rig, hand) = (rig.into_owned(), hand.into_owned());
         let estimator = Self::from_parts(rig, hand, descriptor.into_owned(), regression)?;

@@ -1,25 +1,20 @@
 //! Training on any number of scenes that stream by, all at once or in parts.
 
-use faer::{Mat, MatRef};
 use phalanx_camera::Rig;
-use phalanx_hand::{Dof, HandShape};
-use phalanx_rvm::{Columns, Metric, Pilot, Projected, Sums};
-use rayon::prelude::*;
+use phalanx_hand::HandShape;
 use serde::{Deserialize, Serialize};
 
+use crate::basis::{Basis, described_ones, targets_of};
 use crate::container::Container;
-use crate::regressor::{columns_of, evenly_spaced};
+use crate::gathered::Gathered;
 use crate::shard::{BLOCK, scenes_of};
-use crate::{
-    Descriptor, Error, Estimator, EvenlySpaced, Progress, Regression, Regressor, Result, Scenes,
-    Shard, Training, describe_each, describe_scenes, targets,
-};
+use crate::{Error, Estimator, Progress, Result, Scenes, Shard, Training, describe_scenes};
 
-const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 3 };
+const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 4 };
 
 /// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
-/// and to [`finish`](Self::finish) the estimator. Its size depends on the regressor's columns and
-/// not on the number of scenes.
+/// and to [`finish`](Self::finish) the estimator. For most regressors that is sums, whose size does
+/// not depend on the number of scenes; [`Regressor::Network`] keeps what it reads of each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     basis: Basis,
@@ -27,24 +22,7 @@ pub struct Part {
     /// The blocks that are in the sums, ascending, and how many scenes could not be described.
     blocks: Vec<usize>,
     left_out: usize,
-    /// One for all numbers of the pose, or for each of the metric's groups.
-    sums: Vec<Sums>,
-}
-
-/// What every part of a training must know before it begins; each finds it by itself.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Basis {
-    rig: Rig,
-    hand: HandShape,
-    descriptor: Descriptor,
-    regressor: Regressor,
-    /// The distances, where the regressor learns them.
-    metric: Option<Metric>,
-    /// Scenes that scaling and Gaussian centres are taken from, and their x (as the regressor reads
-    /// it) and y (28), one after the other.
-    pilot: Vec<usize>,
-    pilot_x: Vec<f64>,
-    pilot_y: Vec<f64>,
+    gathered: Gathered,
 }
 
 impl Training {
@@ -75,8 +53,8 @@ impl Training {
         let basis = self.basis(rig, hand, scenes, progress)?;
         let columns = basis.columns()?;
         let blocks: Vec<usize> = shard.blocks(scenes.count()).collect();
-        let sums = columns.iter().map(Sums::new).collect();
-        let mut part = Part { sums, scenes: scenes.count(), left_out: 0, blocks, basis };
+        let gathered = Gathered::new(&basis, &columns);
+        let mut part = Part { gathered, scenes: scenes.count(), left_out: 0, blocks, basis };
         let shown = part.blocks.iter().map(|&block| scenes_of(block, part.scenes).len()).sum();
         progress.begin("render, describe, sum", shown);
         for &block in &part.blocks {
@@ -89,134 +67,9 @@ impl Training {
                 continue;
             }
             let y = targets_of(scenes, &kept);
-            part.basis.add(&mut part.sums, &columns, &x, &y)?;
+            part.gathered.add(&part.basis, &columns, block, x, &y)?;
         }
         Ok(part)
-    }
-
-    fn basis(
-        &self,
-        rig: &Rig,
-        hand: &HandShape,
-        scenes: &dyn Scenes,
-        progress: &dyn Progress,
-    ) -> Result<Basis> {
-        self.regressor.summed()?;
-        let spaced = EvenlySpaced::new(scenes, Training::CODEBOOK_SCENES);
-        let described = describe_each(rig, &spaced, self.sight(), progress)?;
-        let (contexts, failed): (Vec<_>, Vec<_>) = described.into_iter().partition(Result::is_ok);
-        let contexts: Vec<_> = contexts.into_iter().filter_map(Result::ok).collect();
-        if contexts.len() < 2 {
-            let reason = failed.into_iter().find_map(Result::err);
-            return Err(reason.unwrap_or(Error::TooFewPoses { found: contexts.len() }));
-        }
-        progress.begin("cluster shape contexts", 1);
-        let descriptor = self.descriptor(&contexts)?;
-        drop(contexts);
-        progress.step();
-        let pilot = evenly_spaced(scenes.count(), self.regressor.pilot());
-        progress.begin("render and describe", pilot.len());
-        let described = describe_scenes(rig, scenes, &pilot, &descriptor, progress)?;
-        let (pilot, x) = described_ones(&pilot, described);
-        let y = targets_of(scenes, &pilot);
-        let metric = match &self.regressor {
-            Regressor::LearntMetric(fitter) => {
-                progress.begin("learn distances", 1);
-                let metric = fitter.learn(x.as_ref(), y.as_ref(), &descriptor.blocks())?;
-                progress.step();
-                Some(metric)
-            }
-            _ => None,
-        };
-        let chosen = evenly_spaced(pilot.len(), self.regressor.centres());
-        let [x, y] = [x, y].map(|all| columns_of(all.as_ref(), &chosen));
-        let x = match &metric {
-            Some(metric) => metric.projection.apply(x.as_ref())?,
-            None => x,
-        };
-        let numbers = |all: &Mat<f64>| all.col_iter().flat_map(|c| c.iter().copied()).collect();
-        Ok(Basis {
-            rig: rig.clone(),
-            hand: hand.clone(),
-            descriptor,
-            regressor: self.regressor.clone(),
-            metric,
-            pilot_x: numbers(&x),
-            pilot_y: numbers(&y),
-            pilot: chosen.into_iter().map(|place| pilot[place]).collect(),
-        })
-    }
-}
-
-impl Basis {
-    /// Numbers that the regressor reads of a scene.
-    fn read(&self) -> usize {
-        self.metric.as_ref().map_or(self.descriptor.dim(), |metric| metric.projection.outputs())
-    }
-
-    /// The columns of all numbers of the pose together, or of each group.
-    fn columns(&self) -> Result<Vec<Columns>> {
-        let samples = self.pilot.len();
-        let length = |each: usize| each.saturating_mul(samples);
-        for (part, found, expected) in [
-            ("numbers of pilot descriptors", self.pilot_x.len(), length(self.read())),
-            ("numbers of pilot poses", self.pilot_y.len(), length(Dof::COUNT)),
-        ] {
-            if found != expected {
-                return Err(Error::Mismatch { part, found, expected });
-            }
-        }
-        let x = MatRef::from_column_major_slice(&self.pilot_x, self.read(), samples);
-        let y = MatRef::from_column_major_slice(&self.pilot_y, Dof::COUNT, samples);
-        let Regressor::LearntMetric(fitter) = &self.regressor else {
-            let pilot = Pilot { x, y, samples: &self.pilot };
-            return Ok(vec![Columns::new(&pilot, self.regressor.summed()?)?]);
-        };
-        let metric = self.metric()?;
-        let of_group = |group: usize| {
-            let y = metric.targets(group, y);
-            let x = metric.part(group, x);
-            let pilot = Pilot { x, y: y.as_ref(), samples: &self.pilot };
-            Ok(Columns::in_proportion(&pilot, fitter.regression.width)?)
-        };
-        (0..metric.groups.len()).into_par_iter().map(of_group).collect()
-    }
-
-    /// The learnt distances of a regressor that learns them.
-    fn metric(&self) -> Result<&Metric> {
-        let missing = Error::Mismatch { part: "learnt metrics", found: 0, expected: 1 };
-        self.metric.as_ref().ok_or(missing)
-    }
-
-    /// Adds scenes' descriptors and poses to the sums.
-    fn add(
-        &self,
-        sums: &mut [Sums],
-        columns: &[Columns],
-        x: &Mat<f64>,
-        y: &Mat<f64>,
-    ) -> Result<()> {
-        let Some(metric) = &self.metric else {
-            return Ok(sums[0].add(&columns[0], x.as_ref(), y.as_ref())?);
-        };
-        let z = metric.projection.apply(x.as_ref())?;
-        for (group, (sums, columns)) in sums.iter_mut().zip(columns).enumerate() {
-            let y = metric.targets(group, y.as_ref());
-            sums.add(columns, metric.part(group, z.as_ref()), y.as_ref())?;
-        }
-        Ok(())
-    }
-
-    /// The regression that sums over all scenes amount to.
-    fn fit(&self, sums: &[Sums]) -> Result<Regression> {
-        let work: Vec<(Columns, &Sums)> = self.columns()?.into_iter().zip(sums).collect();
-        let fit =
-            |(columns, sums): &(Columns, &Sums)| Ok(self.regressor.fit_sums(columns, sums)?.model);
-        let mut models = work.par_iter().map(fit).collect::<Result<Vec<_>>>()?;
-        Ok(match &self.metric {
-            Some(metric) => Projected::from_parts(metric.clone(), models)?.into(),
-            None => models.remove(0).into(),
-        })
     }
 }
 
@@ -231,17 +84,10 @@ impl Part {
         let ascending = |numbers: &[usize], end: usize| {
             numbers.is_sorted_by(|a, b| a < b) && numbers.last().is_none_or(|last| *last < end)
         };
-        let shown: usize = self.blocks.iter().map(|&b| scenes_of(b, self.scenes).len()).sum();
         for (reason, holds) in [
             ("its blocks are not in order", ascending(&self.blocks, self.scenes.div_ceil(BLOCK))),
             ("its pilot is not in order", ascending(&self.basis.pilot, self.scenes)),
             ("its pilot is too large", self.basis.pilot.len() <= self.basis.regressor.centres()),
-            (
-                "its sums are of other scenes than its blocks",
-                self.sums
-                    .iter()
-                    .all(|sums| sums.samples().checked_add(self.left_out) == Some(shown)),
-            ),
         ] {
             if !holds {
                 return Err(Error::FileContent { what: PART.what, reason: reason.to_owned() });
@@ -271,9 +117,7 @@ impl Part {
             let both = scenes_of(block, self.scenes);
             return Err(Error::Overlap { first: both.start, last: both.end - 1 });
         }
-        for (sums, other) in self.sums.iter_mut().zip(&other.sums) {
-            sums.merge(other)?;
-        }
+        self.gathered.merge(other.gathered)?;
         self.blocks.extend(other.blocks);
         self.blocks.sort_unstable();
         self.left_out += other.left_out;
@@ -284,13 +128,13 @@ impl Part {
     ///
     /// # Errors
     /// A missing part, or what the regressor reports.
-    pub fn finish(self) -> Result<Estimator> {
+    pub fn finish(self, progress: &dyn Progress) -> Result<Estimator> {
         let all = self.scenes.div_ceil(BLOCK);
         if let Some(missing) = (0..all).find(|block| self.blocks.get(*block) != Some(block)) {
             let missing = scenes_of(missing, self.scenes);
             return Err(Error::MissingPart { first: missing.start, last: missing.end - 1 });
         }
-        let regression = self.basis.fit(&self.sums)?;
+        let regression = self.gathered.fit(&self.basis, progress)?;
         let Basis { rig, hand, descriptor, .. } = self.basis;
         Estimator::from_parts(rig, hand, descriptor, regression)
     }
@@ -314,38 +158,16 @@ impl Part {
         part.basis.hand.validate()?;
         part.check_numbers()?;
         let columns = part.basis.columns()?;
-        let (found, expected) = (part.sums.len(), columns.len());
-        if found != expected {
-            return Err(Error::Mismatch { part: "sums", found, expected });
-        }
-        // Sums refuse to be joined with those of other columns.
-        for (columns, sums) in columns.iter().zip(&part.sums) {
-            Sums::new(columns).merge(sums)?;
-        }
+        let shown: usize = part.blocks.iter().map(|&b| scenes_of(b, part.scenes).len()).sum();
+        let samples = shown.checked_sub(part.left_out);
+        part.gathered.check(&part.basis, &columns, &part.blocks, samples)?;
         Ok(part)
     }
 }
 
-/// Which scenes could be described, and their descriptors.
-fn described_ones(numbers: &[usize], described: Vec<Result<Vec<f64>>>) -> (Vec<usize>, Mat<f64>) {
-    let kept: Vec<(usize, Vec<f64>)> = numbers
-        .iter()
-        .zip(described)
-        .filter_map(|(&number, described)| Some((number, described.ok()?)))
-        .collect();
-    let dim = kept.first().map_or(0, |(_, x)| x.len());
-    let x = Mat::from_fn(dim, kept.len(), |row, i| kept[i].1[row]);
-    (kept.into_iter().map(|(number, _)| number).collect(), x)
-}
-
-fn targets_of(scenes: &dyn Scenes, numbers: &[usize]) -> Mat<f64> {
-    let poses: Vec<_> = numbers.iter().map(|&number| scenes.scene(number).pose).collect();
-    targets(&poses)
-}
-
 #[cfg(test)]
 mod tests {
-    use phalanx_hand::Pose;
+    use phalanx_hand::{Dof, Pose};
     use phalanx_rvm::Ridge;
 
     use super::*;

@@ -2,9 +2,11 @@
 
 use phalanx_codebook::KMeans;
 use phalanx_multiview::Vocabulary;
-use phalanx_rvm::{Deviation, GradientMetric, Nystrom, Penalty, Width};
+use phalanx_rvm::{Deviation, GradientMetric, Nystrom, Penalty, Perceptron, Width};
 
-use crate::{Description, Framing, LearntMetric, OrientationRule, Regressor, Training};
+use crate::{
+    Description, Framing, LearntMetric, NetworkTraining, OrientationRule, Regressor, Training,
+};
 
 /// How much time an estimator is worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -14,7 +16,7 @@ pub enum Preset {
     /// A few minutes.
     #[default]
     Balanced,
-    /// Four times as many scenes as `Balanced`, and twice as many Gaussians.
+    /// Four times as many scenes as `Balanced`, and a wider network.
     Best,
 }
 
@@ -34,15 +36,27 @@ impl Preset {
     /// The training. It learns from scenes that stream by, of which it should see independent,
     /// damaged ones, as many as [`scenes`](Self::scenes) says.
     pub fn training(self) -> Training {
-        let (pilot, rounds, first, gradients, centres) = match self {
-            Self::Fast => (2000, 1, 800, 300, 800),
-            Self::Balanced => (8000, 2, 1500, 1000, 2500),
-            Self::Best => (12_000, 3, 2500, 1500, 5000),
-        };
         let regression = |width, penalties: &[f64]| Nystrom {
             width: Width::Scatter(width),
             deviation: Deviation::CrossValidated,
             penalty: Penalty::CrossValidated(penalties.to_vec()),
+        };
+        let regressor = match self {
+            Self::Fast => Regressor::LearntMetric(LearntMetric {
+                pilot: 2000,
+                components: 120,
+                metric: GradientMetric {
+                    regression: regression(1.0, &[0.01, 0.03, 0.1, 0.3]),
+                    rounds: 1,
+                    centres: 800,
+                    gradients: 300,
+                    rank: 32,
+                },
+                centres: 800,
+                regression: regression(1.0, &[1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1]),
+            }),
+            Self::Balanced => network(512),
+            Self::Best => network(768),
         };
         Training {
             orientation: OrientationRule::default(),
@@ -53,19 +67,13 @@ impl Preset {
                 ..Vocabulary::default()
             },
             description: Description::Residuals,
-            regressor: Regressor::LearntMetric(LearntMetric {
-                pilot,
-                components: 120,
-                metric: GradientMetric {
-                    regression: regression(1.0, &[0.01, 0.03, 0.1, 0.3]),
-                    rounds,
-                    centres: first,
-                    gradients,
-                    rank: 32,
-                },
-                centres,
-                regression: regression(1.0, &[1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1]),
-            }),
+            regressor,
         }
     }
+}
+
+/// A network on principal components, three layers so wide and one after them.
+fn network(width: usize) -> Regressor {
+    let perceptron = Perceptron { hidden: vec![width; 3], ..Perceptron::default() };
+    Regressor::Network(NetworkTraining { pilot: 4000, components: 120, perceptron })
 }

@@ -1,6 +1,5 @@
 //! The fitted regressor of an estimator.
-
-use phalanx_rvm::{Model, Projected, Scratch};
+use phalanx_rvm::{Model, NetworkOnComponents, Projected, Scratch};
 
 /// A fitted regressor from descriptors to poses.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,6 +9,8 @@ pub enum Regression {
     Joint(Box<Model>),
     /// A model for each digit, with a distance of its own.
     Projected(Projected),
+    /// A network of all numbers of the pose, on the descriptor's principal components.
+    Network(Box<NetworkOnComponents>),
 }
 
 impl From<Model> for Regression {
@@ -24,12 +25,19 @@ impl From<Projected> for Regression {
     }
 }
 
+impl From<NetworkOnComponents> for Regression {
+    fn from(network: NetworkOnComponents) -> Self {
+        Self::Network(Box::new(network))
+    }
+}
+
 impl Regression {
-    /// The models, of all numbers of the pose or of a group of them each.
+    /// The models, of all numbers of the pose or of a group of them each; none of a network.
     pub fn models(&self) -> &[Model] {
         match self {
             Self::Joint(model) => std::slice::from_ref(model),
             Self::Projected(projected) => projected.models(),
+            Self::Network(_) => &[],
         }
     }
 
@@ -38,12 +46,16 @@ impl Regression {
         match self {
             Self::Joint(model) => model.inputs(),
             Self::Projected(projected) => projected.inputs(),
+            Self::Network(own) => own.inputs(),
         }
     }
 
     /// Length of a pose.
     pub fn outputs(&self) -> usize {
-        self.models().iter().map(Model::outputs).sum()
+        match self {
+            Self::Network(own) => own.outputs(),
+            _ => self.models().iter().map(Model::outputs).sum(),
+        }
     }
 
     /// How many numbers of the descriptor it reads.
@@ -51,6 +63,7 @@ impl Regression {
         match self {
             Self::Joint(model) => model.selected_features().len(),
             Self::Projected(projected) => projected.inputs(),
+            Self::Network(own) => own.inputs(),
         }
     }
 
@@ -70,6 +83,7 @@ impl Regression {
         match self {
             Self::Joint(model) => model.predict_into(x, scratch, mean, std),
             Self::Projected(projected) => projected.predict_into(x, scratch, mean, std),
+            Self::Network(own) => own.predict_into(x, scratch, mean, std),
         }
     }
 }

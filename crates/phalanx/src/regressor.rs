@@ -3,12 +3,14 @@
 use faer::{Mat, MatRef};
 use phalanx_hand::{Digit, Dof};
 use phalanx_rvm::{
-    Block, Bridges, Cascade, Columns, Fit, ForwardSelection, GradientMetric, Kernel, KernelRidge,
-    Metric, MultivariateRvm, Nystrom, Pilot, Ridge, Sums, Tipping,
+    Block, Bridges, Cascade, Columns, Components, Fit, ForwardSelection, GradientMetric, Kernel,
+    KernelRidge, Metric, MultivariateRvm, NetworkOnComponents, Nystrom, Perceptron, Pilot, Ridge,
+    Sums, Tipping,
 };
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Result};
+use crate::basis::Reading;
+use crate::{Descriptor, Error, Progress, Regression, Result};
 
 /// Samples that are added to sums at a time.
 const BATCH: usize = 4096;
@@ -36,6 +38,8 @@ pub enum Regressor {
     /// Kernel ridge regression on some of the samples' Gaussians, for each digit with a distance of
     /// its own that is learnt first.
     LearntMetric(LearntMetric),
+    /// A perceptron on the descriptor's principal components.
+    Network(NetworkTraining),
 }
 
 /// How distances are learnt and regressed with. In a prior without couplings between the digits, what
@@ -55,6 +59,17 @@ pub struct LearntMetric {
     pub regression: Nystrom,
 }
 
+/// How a network is trained. What it reads of every scene is kept until then: some kilobytes each.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NetworkTraining {
+    /// Scenes, evenly spaced, that principal components are learnt from.
+    pub pilot: usize,
+    /// Principal components of each view's code, and of what is beside it, at most.
+    pub components: usize,
+    /// The network.
+    pub perceptron: Perceptron,
+}
+
 impl LearntMetric {
     /// Learns the distances from a pilot's descriptors, K × n, made of parts of these lengths, and
     /// poses, 28 × n.
@@ -64,10 +79,13 @@ impl LearntMetric {
         y: MatRef<'_, f64>,
         parts: &[usize],
     ) -> Result<Metric> {
-        let block = |&inputs: &usize| Block { inputs, components: self.components };
-        let blocks: Vec<Block> = parts.iter().map(block).collect();
-        Ok(self.metric.learn(x, y, &blocks, &groups())?)
+        Ok(self.metric.learn(x, y, &blocks(parts, self.components), &groups())?)
     }
+}
+
+/// Parts of these lengths, with at most so many components each.
+fn blocks(parts: &[usize], components: usize) -> Vec<Block> {
+    parts.iter().map(|&inputs| Block { inputs, components }).collect()
 }
 
 /// The numbers of the pose that are regressed together: each digit's, and all others.
@@ -86,6 +104,7 @@ impl Regressor {
     pub(crate) fn pilot(&self) -> usize {
         match self {
             Self::LearntMetric(fitter) => fitter.pilot,
+            Self::Network(fitter) => fitter.pilot,
             _ => Self::CANDIDATES,
         }
     }
@@ -94,8 +113,61 @@ impl Regressor {
     pub(crate) fn centres(&self) -> usize {
         match self {
             Self::LearntMetric(fitter) => fitter.centres,
+            Self::Network(_) => 0,
             _ => Self::CANDIDATES,
         }
+    }
+
+    /// Whether it is fitted to samples rather than to sums over them, where scenes stream by.
+    pub(crate) fn needs_samples(&self) -> bool {
+        matches!(self, Self::Network(_))
+    }
+
+    /// Refuses a regressor that cannot be learnt from scenes that stream by.
+    pub(crate) fn streams(&self) -> Result<()> {
+        if self.needs_samples() { Ok(()) } else { self.summed().map(drop) }
+    }
+
+    /// Learns what to read of a descriptor from a pilot's descriptors, K × n, and poses, 28 × n.
+    pub(crate) fn reading(
+        &self,
+        x: &Mat<f64>,
+        y: &Mat<f64>,
+        descriptor: &Descriptor,
+        progress: &dyn Progress,
+    ) -> Result<Reading> {
+        let parts = descriptor.blocks();
+        Ok(match self {
+            Self::LearntMetric(fitter) => {
+                progress.begin("learn distances", 1);
+                let metric = fitter.learn(x.as_ref(), y.as_ref(), &parts)?;
+                progress.step();
+                Reading::Metric(metric)
+            }
+            Self::Network(fitter) => {
+                progress.begin("find principal components", 1);
+                let components = Components::of(x.as_ref(), &blocks(&parts, fitter.components))?;
+                progress.step();
+                Reading::Components(components)
+            }
+            _ => Reading::Whole,
+        })
+    }
+
+    /// Fits samples themselves: what is read of them, d × I, and their poses, 28 × I.
+    pub(crate) fn fit_samples(
+        &self,
+        reading: &Reading,
+        x: MatRef<'_, f32>,
+        y: MatRef<'_, f64>,
+        progress: &dyn Progress,
+    ) -> Result<Regression> {
+        let (Self::Network(fitter), Reading::Components(components)) = (self, reading) else {
+            return Err(Error::Mismatch { part: "principal components", found: 0, expected: 1 });
+        };
+        progress.begin("train the network", fitter.perceptron.epochs);
+        let trained = fitter.perceptron.fit_observed(x, y, &mut |_| progress.step())?;
+        Ok(NetworkOnComponents::from_parts(components.clone(), trained.network)?.into())
     }
 
     /// Fits targets `y`, m × I, to descriptors `x`, K × I; samples are columns. Of regressors with
@@ -119,6 +191,9 @@ impl Regressor {
             }
             Self::LearntMetric(_) => {
                 return Err(Error::InShardsOnly { regressor: "regression in a learnt metric" });
+            }
+            Self::Network(_) => {
+                return Err(Error::InShardsOnly { regressor: "a network on components" });
             }
             Self::Bridges(_)
             | Self::Cascade(_)
@@ -146,6 +221,7 @@ impl Regressor {
                 not("both", "its features are selected before samples can be summed")
             }
             Self::Tipping(_) => not("Tipping's machine", "it needs all samples at once"),
+            Self::Network(_) => not("a network", "it needs its samples, not sums over them"),
             Self::KernelRidge(_) => {
                 not("dense kernel regression", "it needs all samples at once; Nyström's does not")
             }
@@ -162,7 +238,7 @@ impl Regressor {
             Self::MultivariateRvm(fitter) => fitter.fit_sums(columns, sums)?,
             Self::Nystrom(fitter) => fitter.fit_sums(columns, sums)?,
             Self::LearntMetric(fitter) => fitter.regression.fit_sums(columns, sums)?,
-            Self::Cascade(_) | Self::Tipping(_) | Self::KernelRidge(_) => {
+            Self::Cascade(_) | Self::Tipping(_) | Self::KernelRidge(_) | Self::Network(_) => {
                 unreachable!("refused above")
             }
         })

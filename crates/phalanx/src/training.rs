@@ -80,10 +80,10 @@ impl Training {
             return Err(Error::TooFewPoses { found: poses.len() });
         }
         if self.description != Description::Counts
-            || matches!(self.regressor, Regressor::LearntMetric(_))
+            || matches!(self.regressor, Regressor::LearntMetric(_) | Regressor::Network(_))
         {
             let scenes = NominalScenes { rig, hand, poses };
-            return self.shard(rig, hand, &scenes, Shard::WHOLE, progress)?.finish();
+            return self.shard(rig, hand, &scenes, Shard::WHOLE, progress)?.finish(progress);
         }
         let contexts = describe_poses(rig, hand, poses, self.sight(), progress)?;
         progress.begin("cluster shape contexts", 1);

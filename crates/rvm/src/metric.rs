@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
-use crate::principal::Principal;
+use crate::principal::of_blocks;
 use crate::problem::Problem;
 use crate::sums::Sums;
 use crate::{
@@ -208,25 +208,15 @@ fn centred_product(a: MatRef<'_, f64>, x: MatRef<'_, f64>, mean: &[f64]) -> Mat<
 
 /// The mean of all inputs, and their blocks' principal components, d×K.
 fn components(x: MatRef<'_, f64>, blocks: &[Block]) -> Result<(Vec<f64>, Mat<f64>)> {
-    check::length("inputs of all blocks", x.nrows(), blocks.iter().map(|b| b.inputs).sum())?;
-    let starts = blocks.iter().scan(0, |next, block| {
-        let start = *next;
-        *next += block.inputs;
-        Some((start, block))
-    });
-    let starts: Vec<(usize, &Block)> = starts.collect();
-    let of_block = |&(start, block): &(usize, &Block)| {
-        Principal::of(x.subrows(start, block.inputs), block.components)
-    };
-    let parts = starts.par_iter().map(of_block).collect::<Result<Vec<_>>>()?;
+    let parts = of_blocks(x, blocks)?;
     let mean = parts.iter().flat_map(|part| part.mean.iter().copied()).collect();
     let all = parts.iter().map(|part| part.matrix.nrows()).sum();
     let mut joined = Mat::zeros(all, x.nrows());
-    let mut row = 0;
-    for ((start, block), part) in starts.into_iter().zip(&parts) {
-        let rows = part.matrix.nrows();
-        joined.as_mut().submatrix_mut(row, start, rows, block.inputs).copy_from(&part.matrix);
-        row += rows;
+    let (mut row, mut column) = (0, 0);
+    for part in &parts {
+        let (rows, columns) = part.matrix.shape();
+        joined.as_mut().submatrix_mut(row, column, rows, columns).copy_from(&part.matrix);
+        (row, column) = (row + rows, column + columns);
     }
     Ok((mean, joined))
 }

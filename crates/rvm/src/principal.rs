@@ -1,6 +1,7 @@
 //! Principal components of blocks of inputs.
 
 use faer::{Mat, MatRef};
+use rayon::prelude::*;
 
 use crate::{Result, check, linalg};
 
@@ -37,4 +38,19 @@ impl Principal {
             Mat::from_fn(kept.len(), x.nrows(), |d, k| scale * eigen.vectors[(k, kept[d])]);
         Ok(Self { mean, matrix })
     }
+}
+
+/// The principal components of each block of the rows of `x`, K×n.
+pub(crate) fn of_blocks(x: MatRef<'_, f64>, blocks: &[Block]) -> Result<Vec<Principal>> {
+    check::length("inputs of all blocks", x.nrows(), blocks.iter().map(|b| b.inputs).sum())?;
+    let starts = blocks.iter().scan(0, |next, block| {
+        let start = *next;
+        *next += block.inputs;
+        Some((start, block))
+    });
+    let starts: Vec<(usize, &Block)> = starts.collect();
+    let of_block = |&(start, block): &(usize, &Block)| {
+        Principal::of(x.subrows(start, block.inputs), block.components)
+    };
+    starts.par_iter().map(of_block).collect()
 }

@@ -87,6 +87,12 @@ impl Projection {
 
     /// z of one input `x`, all finite. `single` is working memory.
     pub fn apply_into(&self, x: &[f64], single: &mut Vec<f32>, z: &mut Vec<f64>) -> Result<()> {
+        z.clear();
+        self.append(x, single, z)
+    }
+
+    /// Appends z of one input.
+    pub(crate) fn append(&self, x: &[f64], single: &mut Vec<f32>, z: &mut Vec<f64>) -> Result<()> {
         check::length("inputs", self.inputs(), x.len())?;
         single.clear();
         for (row, &value) in x.iter().enumerate() {
@@ -105,7 +111,6 @@ impl Projection {
             1.0,
             Par::Seq,
         );
-        z.clear();
         z.extend(out.iter().map(|&value| f64::from(value)));
         Ok(())
     }

@@ -133,9 +133,7 @@ impl Learnt {
         let training = Training { framing, ..preset.training() };
         let part = training.shard(&rig, &ground.hand, &set, Shard::WHOLE, progress)?;
         let samples = set.count() - part.left_out();
-        progress.begin("fit the regressor", 1);
-        let mut estimator = part.finish()?;
-        progress.step();
+        let mut estimator = part.finish(progress)?;
         if refines(&answers) {
             let fresh = sets::fresh_for(framing, &rig, &ground.hand);
             estimator = estimator.learn_errors(&fresh, progress)?;

@@ -60,7 +60,7 @@ pub(super) fn learn(
     }
     let refinement = Refinement { noise: NOISE_PX, ..Refinement::default() };
     let refiner = Refiner::new(rig, hand, &set.poses, refinement)?;
-    Ok(Learnt { estimator: part.finish()?, refiner })
+    Ok(Learnt { estimator: part.finish(progress)?, refiner })
 }
 
 impl Learnt {

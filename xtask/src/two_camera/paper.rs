@@ -87,7 +87,7 @@ impl Learning<'_> {
         let training =
             Training { framing: Framing::Window, regressor: nystrom(), ..Training::default() };
         let set = sets::loosely_placed(rig, hand, *samples);
-        Ok(training.shard(rig, hand, &set, Shard::WHOLE, *progress)?.finish()?)
+        Ok(training.shard(rig, hand, &set, Shard::WHOLE, *progress)?.finish(*progress)?)
     }
 
     /// With the paper's selection, which needs its samples at once, in the same descriptors.

@@ -72,7 +72,7 @@ fn a_part_is_saved_and_loaded_and_finishes_to_the_same() {
     let part = training().shard(&rig, &hand, &scenes, Shard::WHOLE, &Silent).unwrap();
     let read = phalanx::Part::from_bytes(&part.to_bytes().unwrap()).unwrap();
     assert_eq!(read, part);
-    assert_eq!(&read.finish().unwrap(), &*LEARNT);
+    assert_eq!(&read.finish(&Silent).unwrap(), &*LEARNT);
 }
 
 #[test]

@@ -62,7 +62,7 @@ fn merged_shards_are_the_bytes_of_one_run_at_any_number_of_threads() {
                 a.merge(b).unwrap();
                 a
             });
-            merged.unwrap().finish().unwrap().to_bytes().unwrap()
+            merged.unwrap().finish(&Silent).unwrap().to_bytes().unwrap()
         })
     };
     let whole = run(1, &[(1, 1)]);
@@ -75,7 +75,7 @@ fn merged_shards_are_the_bytes_of_one_run_at_any_number_of_threads() {
 fn four_shards_of_kernel_regression_are_one_run() {
     let scenes = Random::new(1100);
     let nystrom = Regressor::Nystrom(Nystrom::default());
-    let bytes = |part: Part| part.finish().unwrap().to_bytes().unwrap();
+    let bytes = |part: Part| part.finish(&Silent).unwrap().to_bytes().unwrap();
     let whole = bytes(scenes.shard(&nystrom, 1, 1).unwrap());
     let mut merged = scenes.shard(&nystrom, 4, 4).unwrap();
     for index in [2, 1, 3] {
@@ -88,7 +88,7 @@ fn four_shards_of_kernel_regression_are_one_run() {
 fn a_missing_or_repeated_part_is_named() {
     let scenes = Random::new(1100);
     let first = scenes.shard(&linear(), 1, 2).unwrap();
-    let error = first.clone().finish().unwrap_err();
+    let error = first.clone().finish(&Silent).unwrap_err();
     assert_eq!(error.to_string(), "a part is missing: none holds samples 1024 to 1099");
     let error = first.clone().merge(first).unwrap_err();
     assert_eq!(error.to_string(), "two parts both hold samples 0 to 1023");

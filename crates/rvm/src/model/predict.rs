@@ -25,6 +25,9 @@ pub struct Scratch {
     /// A projection's input in single precision, and its output.
     pub(crate) single: Vec<f32>,
     pub(crate) projected: Vec<f64>,
+    /// Principal components, and what goes into a network's next layer.
+    pub(crate) components: Vec<f64>,
+    pub(crate) hidden: Vec<f64>,
 }
 
 impl Scratch {

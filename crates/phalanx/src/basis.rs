@@ -1,0 +1,165 @@
+//! What every part of a training begins with.
+
+use faer::{Mat, MatRef};
+use phalanx_camera::Rig;
+use phalanx_hand::{Dof, HandShape};
+use phalanx_rvm::{Columns, Components, Kernel, Metric, Pilot};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::regressor::{columns_of, evenly_spaced};
+use crate::{
+    Descriptor, Error, EvenlySpaced, Progress, Regressor, Result, Scenes, Training, describe_each,
+    describe_scenes, targets,
+};
+
+/// What every part of a training must know before it begins; each finds it by itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Basis {
+    pub(crate) rig: Rig,
+    pub(crate) hand: HandShape,
+    pub(crate) descriptor: Descriptor,
+    pub(crate) regressor: Regressor,
+    pub(crate) reading: Reading,
+    /// Scenes that scaling and Gaussian centres are taken from, and their x (as the regressor reads
+    /// it) and y (28), one after the other.
+    pub(crate) pilot: Vec<usize>,
+    pub(crate) pilot_x: Vec<f64>,
+    pilot_y: Vec<f64>,
+}
+
+/// What the regressor reads of a scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Reading {
+    /// Its descriptor.
+    Whole,
+    /// The descriptor's principal components.
+    Components(Components),
+    /// What learnt distances make of it.
+    Metric(Metric),
+}
+
+impl Training {
+    pub(crate) fn basis(
+        &self,
+        rig: &Rig,
+        hand: &HandShape,
+        scenes: &dyn Scenes,
+        progress: &dyn Progress,
+    ) -> Result<Basis> {
+        self.regressor.streams()?;
+        let spaced = EvenlySpaced::new(scenes, Training::CODEBOOK_SCENES);
+        let described = describe_each(rig, &spaced, self.sight(), progress)?;
+        let (contexts, failed): (Vec<_>, Vec<_>) = described.into_iter().partition(Result::is_ok);
+        let contexts: Vec<_> = contexts.into_iter().filter_map(Result::ok).collect();
+        if contexts.len() < 2 {
+            let reason = failed.into_iter().find_map(Result::err);
+            return Err(reason.unwrap_or(Error::TooFewPoses { found: contexts.len() }));
+        }
+        progress.begin("cluster shape contexts", 1);
+        let descriptor = self.descriptor(&contexts)?;
+        drop(contexts);
+        progress.step();
+        let pilot = evenly_spaced(scenes.count(), self.regressor.pilot());
+        progress.begin("render and describe", pilot.len());
+        let described = describe_scenes(rig, scenes, &pilot, &descriptor, progress)?;
+        let (pilot, x) = described_ones(&pilot, described);
+        let y = targets_of(scenes, &pilot);
+        let reading = self.regressor.reading(&x, &y, &descriptor, progress)?;
+        let chosen = evenly_spaced(pilot.len(), self.regressor.centres());
+        let [x, y] = [x, y].map(|all| columns_of(all.as_ref(), &chosen));
+        let x = reading.of(x)?;
+        let numbers = |all: &Mat<f64>| all.col_iter().flat_map(|c| c.iter().copied()).collect();
+        Ok(Basis {
+            rig: rig.clone(),
+            hand: hand.clone(),
+            descriptor,
+            regressor: self.regressor.clone(),
+            reading,
+            pilot_x: numbers(&x),
+            pilot_y: numbers(&y),
+            pilot: chosen.into_iter().map(|place| pilot[place]).collect(),
+        })
+    }
+}
+
+impl Reading {
+    /// What is read of descriptors, a column each.
+    pub(crate) fn of(&self, x: Mat<f64>) -> Result<Mat<f64>> {
+        Ok(match self {
+            Self::Whole => x,
+            Self::Components(components) => components.apply(x.as_ref())?,
+            Self::Metric(metric) => metric.projection.apply(x.as_ref())?,
+        })
+    }
+
+    /// How many numbers are read of a descriptor of this length.
+    fn count(&self, dim: usize) -> usize {
+        match self {
+            Self::Whole => dim,
+            Self::Components(components) => components.outputs(),
+            Self::Metric(metric) => metric.projection.outputs(),
+        }
+    }
+}
+
+impl Basis {
+    /// Numbers that the regressor reads of a scene.
+    pub(crate) fn read(&self) -> usize {
+        self.reading.count(self.descriptor.dim())
+    }
+
+    /// The columns of all numbers of the pose together, or of each group; none of a regressor that is
+    /// fitted to the samples themselves.
+    pub(crate) fn columns(&self) -> Result<Vec<Columns>> {
+        let samples = self.pilot.len();
+        let length = |each: usize| each.saturating_mul(samples);
+        for (part, found, expected) in [
+            ("numbers of pilot descriptors", self.pilot_x.len(), length(self.read())),
+            ("numbers of pilot poses", self.pilot_y.len(), length(Dof::COUNT)),
+        ] {
+            if found != expected {
+                return Err(Error::Mismatch { part, found, expected });
+            }
+        }
+        if self.regressor.needs_samples() {
+            return Ok(Vec::new());
+        }
+        let x = MatRef::from_column_major_slice(&self.pilot_x, self.read(), samples);
+        let y = MatRef::from_column_major_slice(&self.pilot_y, Dof::COUNT, samples);
+        let Reading::Metric(metric) = &self.reading else {
+            let pilot = Pilot { x, y, samples: &self.pilot };
+            return Ok(vec![Columns::new(&pilot, self.regressor.summed()?)?]);
+        };
+        let Kernel::Gaussian(width) = self.regressor.summed()? else {
+            return Err(Error::Mismatch { part: "learnt metrics", found: 1, expected: 0 });
+        };
+        let of_group = |group: usize| {
+            let y = metric.targets(group, y);
+            let x = metric.part(group, x);
+            let pilot = Pilot { x, y: y.as_ref(), samples: &self.pilot };
+            Ok(Columns::in_proportion(&pilot, width)?)
+        };
+        (0..metric.groups.len()).into_par_iter().map(of_group).collect()
+    }
+}
+
+/// Which scenes could be described, and their descriptors.
+pub(crate) fn described_ones(
+    numbers: &[usize],
+    described: Vec<Result<Vec<f64>>>,
+) -> (Vec<usize>, Mat<f64>) {
+    let kept: Vec<(usize, Vec<f64>)> = numbers
+        .iter()
+        .zip(described)
+        .filter_map(|(&number, described)| Some((number, described.ok()?)))
+        .collect();
+    let dim = kept.first().map_or(0, |(_, x)| x.len());
+    let x = Mat::from_fn(dim, kept.len(), |row, i| kept[i].1[row]);
+    (kept.into_iter().map(|(number, _)| number).collect(), x)
+}
+
+pub(crate) fn targets_of(scenes: &dyn Scenes, numbers: &[usize]) -> Mat<f64> {
+    let poses: Vec<_> = numbers.iter().map(|&number| scenes.scene(number).pose).collect();
+    targets(&poses)
+}

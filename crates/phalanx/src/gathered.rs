@@ -1,0 +1,168 @@
+//! What a part of a training keeps of its scenes.
+
+use std::collections::BTreeMap;
+
+use faer::{Mat, MatRef};
+use phalanx_hand::Dof;
+use phalanx_rvm::{Columns, Projected, Sums};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::basis::{Basis, Reading};
+use crate::{Error, Progress, Regression, Result};
+
+/// Enough of the scenes to fit the regressor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Gathered {
+    /// Sums over the columns of all numbers of the pose, or over those of each group.
+    Sums(Vec<Sums>),
+    /// The samples themselves, by the number of their block of scenes.
+    Samples(BTreeMap<usize, Samples>),
+}
+
+/// Some samples, one after the other.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Samples {
+    /// What the regressor reads.
+    x: Vec<f32>,
+    /// Poses, 28 numbers each.
+    y: Vec<f64>,
+}
+
+impl Samples {
+    /// How many there are, if they are whole.
+    fn count(&self, read: usize) -> Option<usize> {
+        let count = self.y.len() / Dof::COUNT;
+        let whole =
+            self.y.len() == count * Dof::COUNT && Some(self.x.len()) == count.checked_mul(read);
+        whole.then_some(count)
+    }
+}
+
+impl Gathered {
+    /// Nothing yet, for a regressor with these columns.
+    pub(crate) fn new(basis: &Basis, columns: &[Columns]) -> Self {
+        if basis.regressor.needs_samples() {
+            return Self::Samples(BTreeMap::new());
+        }
+        Self::Sums(columns.iter().map(Sums::new).collect())
+    }
+
+    /// Adds the descriptors and poses of a block of scenes.
+    pub(crate) fn add(
+        &mut self,
+        basis: &Basis,
+        columns: &[Columns],
+        block: usize,
+        x: Mat<f64>,
+        y: &Mat<f64>,
+    ) -> Result<()> {
+        let z = basis.reading.of(x)?;
+        match (self, &basis.reading) {
+            (Self::Samples(blocks), _) => {
+                let x = z.col_iter().flat_map(|column| column.iter().map(|&v| v as f32));
+                let y = y.col_iter().flat_map(|column| column.iter().copied());
+                let (x, y) = (x.collect(), y.collect());
+                blocks.insert(block, Samples { x, y });
+            }
+            (Self::Sums(sums), Reading::Metric(metric)) => {
+                for (group, (sums, columns)) in sums.iter_mut().zip(columns).enumerate() {
+                    let y = metric.targets(group, y.as_ref());
+                    sums.add(columns, metric.part(group, z.as_ref()), y.as_ref())?;
+                }
+            }
+            (Self::Sums(sums), _) => sums[0].add(&columns[0], z.as_ref(), y.as_ref())?,
+        }
+        Ok(())
+    }
+
+    /// Adds what another part of the same training keeps.
+    pub(crate) fn merge(&mut self, other: Self) -> Result<()> {
+        match (self, other) {
+            (Self::Sums(sums), Self::Sums(others)) => {
+                for (sums, other) in sums.iter_mut().zip(&others) {
+                    sums.merge(other)?;
+                }
+            }
+            (Self::Samples(blocks), Self::Samples(others)) => blocks.extend(others),
+            _ => return Err(Error::ForeignPart { what: "their regressors" }),
+        }
+        Ok(())
+    }
+
+    /// Refuses what does not belong to the regressor, or is not of so many samples in these blocks.
+    pub(crate) fn check(
+        &self,
+        basis: &Basis,
+        columns: &[Columns],
+        held: &[usize],
+        samples: Option<usize>,
+    ) -> Result<()> {
+        let foreign = |part, found, expected| Err(Error::Mismatch { part, found, expected });
+        match self {
+            Self::Sums(sums) => {
+                if sums.len() != columns.len() {
+                    return foreign("sums", sums.len(), columns.len());
+                }
+                // Sums refuse to be joined with those of other columns.
+                for (columns, sums) in columns.iter().zip(sums) {
+                    Sums::new(columns).merge(sums)?;
+                }
+                match sums.iter().find(|sums| Some(sums.samples()) != samples) {
+                    Some(sums) => {
+                        foreign("samples in the sums", sums.samples(), samples.unwrap_or(0))
+                    }
+                    None => Ok(()),
+                }
+            }
+            Self::Samples(blocks) => {
+                if !columns.is_empty() {
+                    return foreign("sums", 0, columns.len());
+                }
+                if let Some(&block) = blocks.keys().find(|block| held.binary_search(block).is_err())
+                {
+                    return foreign("the number of a block of samples", block, held.len());
+                }
+                let counts = blocks.values().map(|samples| samples.count(basis.read()));
+                let found = counts.sum::<Option<usize>>();
+                if found == samples {
+                    return Ok(());
+                }
+                foreign("samples", found.unwrap_or(0), samples.unwrap_or(0))
+            }
+        }
+    }
+
+    /// The regression that all scenes amount to.
+    pub(crate) fn fit(&self, basis: &Basis, progress: &dyn Progress) -> Result<Regression> {
+        match self {
+            Self::Sums(sums) => {
+                progress.begin("fit the regressor", 1);
+                let regression = fit_sums(sums, basis)?;
+                progress.step();
+                Ok(regression)
+            }
+            Self::Samples(blocks) => {
+                let x: Vec<f32> =
+                    blocks.values().flat_map(|samples| samples.x.iter().copied()).collect();
+                let y: Vec<f64> =
+                    blocks.values().flat_map(|samples| samples.y.iter().copied()).collect();
+                let count = y.len() / Dof::COUNT;
+                let x = MatRef::from_column_major_slice(&x, basis.read(), count);
+                let y = MatRef::from_column_major_slice(&y, Dof::COUNT, count);
+                basis.regressor.fit_samples(&basis.reading, x, y, progress)
+            }
+        }
+    }
+}
+
+fn fit_sums(sums: &[Sums], basis: &Basis) -> Result<Regression> {
+    let work: Vec<(Columns, &Sums)> = basis.columns()?.into_iter().zip(sums).collect();
+    let fit =
+        |(columns, sums): &(Columns, &Sums)| Ok(basis.regressor.fit_sums(columns, sums)?.model);
+    let mut models = work.par_iter().map(fit).collect::<Result<Vec<_>>>()?;
+    Ok(match &basis.reading {
+        Reading::Metric(metric) => Projected::from_parts(metric.clone(), models)?.into(),
+        _ => models.remove(0).into(),
+    })
+}

@@ -1,0 +1,47 @@
+//! Adam: steps by the mean of the slopes over the root of their mean square (Kingma and Ba 2015).
+
+use rayon::prelude::*;
+
+/// How much of the means each step leaves.
+const MEAN: f64 = 0.9;
+const SQUARE: f64 = 0.999;
+/// Least root of a mean square.
+const LEAST: f64 = 1e-8;
+/// Weights that one task moves.
+const BLOCK: usize = 1 << 14;
+
+pub(super) struct Adam {
+    steps: usize,
+    mean: Vec<f32>,
+    square: Vec<f32>,
+}
+
+impl Adam {
+    pub(super) fn new(weights: usize) -> Self {
+        Self { steps: 0, mean: vec![0.0; weights], square: vec![0.0; weights] }
+    }
+
+    /// Steps taken so far.
+    pub(super) fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Moves weights down their slopes at a rate.
+    pub(super) fn step(&mut self, weights: &mut [f32], slopes: &[f32], rate: f64) {
+        self.steps += 1;
+        // Both means begin at zero, which is made up for.
+        let sofar = |share: f64| 1.0 - share.powi(i32::try_from(self.steps).unwrap_or(i32::MAX));
+        let (rate, root) = ((rate / sofar(MEAN)) as f32, sofar(SQUARE).sqrt().recip() as f32);
+        let means = self.mean.par_chunks_mut(BLOCK).zip(self.square.par_chunks_mut(BLOCK));
+        let blocks = weights.par_chunks_mut(BLOCK).zip(slopes.par_chunks(BLOCK)).zip(means);
+        blocks.for_each(|((weights, slopes), (mean, square))| {
+            let (keep, keep_square, least) = (MEAN as f32, SQUARE as f32, LEAST as f32);
+            let all = weights.iter_mut().zip(slopes).zip(mean).zip(square);
+            for (((weight, &slope), mean), square) in all {
+                *mean = keep * *mean + (1.0 - keep) * slope;
+                *square = keep_square * *square + (1.0 - keep_square) * slope * slope;
+                *weight -= rate * *mean / (square.sqrt() * root + least);
+            }
+        });
+    }
+}
