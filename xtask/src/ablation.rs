@@ -4,8 +4,7 @@ use anyhow::Result;
 use clap::Args;
 use comfy_table::{Table, presets};
 use phalanx::{
-    Description, Estimator, Framing, LearntMetric, OrientationRule, Preset, Progress, Regressor,
-    Shard, Training,
+    Description, Estimator, Framing, OrientationRule, Preset, Progress, Regressor, Shard, Training,
 };
 use phalanx_hand::Pose;
 use phalanx_refine::{Doubt, Refinement};
@@ -116,10 +115,14 @@ fn learnings() -> Vec<(&'static str, Learning)> {
         ("clean scenes", Learning { augment: Augment::No, ..whole() }),
         ("coding by counts", training(|own| own.description = Description::Counts)),
         (
-            "one distance for all digits",
+            "800 Gaussians, a distance for each digit",
+            training(|own| own.regressor = Preset::Fast.training().regressor),
+        ),
+        (
+            "2,000 Gaussians, one distance for all",
             training(|own| {
-                if let Regressor::LearntMetric(LearntMetric { regression, .. }) = &own.regressor {
-                    own.regressor = Regressor::Nystrom(regression.clone());
+                if let Regressor::LearntMetric(own_distances) = Preset::Fast.training().regressor {
+                    own.regressor = Regressor::Nystrom(own_distances.regression);
                 }
             }),
         ),

@@ -167,11 +167,13 @@ impl Part {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use phalanx_hand::{Dof, Pose};
     use phalanx_rvm::Ridge;
 
     use super::*;
-    use crate::{NominalScenes, Silent};
+    use crate::{NominalScenes, Regressor, Silent};
 
     fn part() -> Part {
         let rig = Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap();
@@ -196,13 +198,15 @@ mod tests {
     fn parts_that_contradict_themselves_are_refused() {
         let good = part();
         assert_eq!(Part::from_bytes(&good.to_bytes().unwrap()).unwrap(), good);
-        let spoils: [fn(&mut Part); 6] = [
+        let spoils: [fn(&mut Part); 8] = [
             |part| part.blocks = vec![0, 0],
             |part| part.blocks = vec![1],
             |part| part.left_out = usize::MAX,
             |part| part.basis.pilot.swap(0, 1),
             |part| part.basis.pilot_x.truncate(3),
             |part| part.scenes = usize::MAX,
+            |part| part.gathered = Gathered::Sums(Vec::new()),
+            |part| part.gathered = Gathered::Samples(BTreeMap::new()),
         ];
         for (k, spoil) in spoils.into_iter().enumerate() {
             let mut spoilt = good.clone();

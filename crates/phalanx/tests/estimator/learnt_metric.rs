@@ -1,4 +1,4 @@
-//! Residual codes, coverage and learnt distances: the road of the presets, made small.
+//! Residual codes, coverage and learnt distances: the road of the fast preset, made small.
 
 use std::sync::LazyLock;
 
@@ -10,9 +10,9 @@ use phalanx_hand::HandShape;
 
 use crate::desk::{difference_deg, estimate, masks, mean, poses, top, unseen};
 
-/// The default preset with few of everything.
+/// The fast preset with few of everything.
 fn training() -> Training {
-    let preset = Preset::default().training();
+    let preset = Preset::Fast.training();
     let Regressor::LearntMetric(learnt) = preset.regressor else { unreachable!("it learns one") };
     let mut metric = learnt.metric;
     (metric.centres, metric.gradients, metric.rank) = (40, 30, 6);

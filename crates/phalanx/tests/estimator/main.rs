@@ -7,6 +7,7 @@ mod hypotheses;
 mod invariance;
 mod learnt_metric;
 mod model_file;
+mod network;
 mod photographs;
 mod refusals;
 mod shards;

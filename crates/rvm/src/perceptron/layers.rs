@@ -178,3 +178,73 @@ fn product(out: &mut [f32], a: MatRef<'_, f32>, b: MatRef<'_, f32>) {
         matmul(out, Accum::Replace, a, b, 1.0, Par::Seq);
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use rand_core::SeedableRng;
+
+    use super::*;
+
+    /// The sum of all outputs, each times its place, in plain loops.
+    fn slow(layers: &Layers, x: &[f32]) -> f64 {
+        let inputs = layers.widths[0];
+        let mut sum = 0.0;
+        for sample in x.chunks_exact(inputs) {
+            let mut values: Vec<f64> = sample.iter().map(|&v| f64::from(v)).collect();
+            for layer in 0..layers.count() {
+                let (matrix, bias) = layers.layer(layer);
+                let row = |i: usize| {
+                    let products =
+                        values.iter().enumerate().map(|(k, v)| f64::from(matrix[(i, k)]) * v);
+                    let z = products.sum::<f64>() + f64::from(bias[i]);
+                    if layer + 1 < layers.count() { z / (1.0 + (-z).exp()) } else { z }
+                };
+                values = (0..matrix.nrows()).map(row).collect();
+            }
+            sum += values.iter().enumerate().map(|(i, v)| (i + 1) as f64 * v).sum::<f64>();
+        }
+        sum
+    }
+
+    #[test]
+    fn slopes_are_those_of_central_differences() {
+        let mut random = Pcg64Mcg::seed_from_u64(1);
+        let mut layers = Layers::new(vec![3, 5, 4, 2], &mut random);
+        let x: Vec<f32> = (0..21).map(|k| (k as f32 * 0.7).sin()).collect();
+        let mut pass = Pass::default();
+        pass.forward(&layers, x.clone(), None, &mut |_| Vec::new());
+        for column in pass.output_columns() {
+            column.copy_from_slice(&[1.0, 2.0]);
+        }
+        let slopes = pass.backward(&layers).to_vec();
+        for (weight, slope) in slopes.into_iter().enumerate() {
+            let mut at = |step: f32| {
+                let before = layers.weights[weight];
+                layers.weights[weight] += step;
+                let moved = f64::from(layers.weights[weight] - before);
+                let sum = slow(&layers, &x);
+                layers.weights[weight] = before;
+                (moved, sum)
+            };
+            let ((up, above), (down, below)) = (at(1e-3), at(-1e-3));
+            let expected = (above - below) / (up - down);
+            assert!(
+                (f64::from(slope) - expected).abs() < 1e-3 * (1.0 + expected.abs()),
+                "{weight}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_left_out_neither_speaks_nor_learns() {
+        let mut values: Vec<f32> = (0..1000).map(|k| k as f32 * 0.01 - 5.0).collect();
+        let (plain, mut steepness) = (values.clone(), Vec::new());
+        let bytes: Vec<u8> = (0..1000).map(|k| (k % 256) as u8).collect();
+        bend(&mut values, &mut steepness, Some(&(0.25, bytes)));
+        for (k, z) in plain.into_iter().enumerate() {
+            let factor = if k % 256 < 64 { 0.0 } else { 4.0 / 3.0 };
+            assert!((values[k] - factor * z / (1.0 + (-z).exp())).abs() < 1e-5, "{k}");
+            assert_eq!(steepness[k] == 0.0, factor == 0.0, "{k}");
+        }
+    }
+}

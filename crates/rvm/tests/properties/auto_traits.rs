@@ -1,11 +1,12 @@
 //! Everything public can be sent to, and shared between, threads.
 
 use phalanx_rvm::{
-    Basis, Block, Bridges, Cascade, Columns, ConditionalDensity, ConditionalDensityParts,
-    Deviation, Error, Factor, Fit, ForwardSelection, GradientMetric, Group, Healed, Hypothesis,
-    Kernel, KernelRidge, Lambda, LearntWidths, Metric, Model, ModelParts, MultivariateRvm, Nystrom,
-    Penalty, Pilot, Posterior, Progress, Projected, Projection, ProjectionParts, Report, Ridge,
-    Scratch, Standardiser, Stop, Sums, SumsParts, Tie, Tipping, Trace, Width,
+    Basis, Block, Bridges, Cascade, Columns, Components, ConditionalDensity,
+    ConditionalDensityParts, Deviation, Error, Factor, Fit, FittedNetwork, ForwardSelection,
+    GradientMetric, Group, Healed, Hypothesis, Kernel, KernelRidge, Lambda, LearntWidths, Metric,
+    Model, ModelParts, MultivariateRvm, Network, NetworkOnComponents, Nystrom, Penalty, Perceptron,
+    Pilot, Posterior, Progress, Projected, Projection, ProjectionParts, Report, Ridge, Scratch,
+    Standardiser, Stop, Sums, SumsParts, Tie, Tipping, Trace, Width,
 };
 
 const fn shared<T: Send + Sync>() {}
@@ -21,12 +22,14 @@ shared!(
     Bridges,
     Cascade,
     Columns,
+    Components,
     ConditionalDensity,
     ConditionalDensityParts,
     Deviation,
     Error,
     Factor,
     Fit,
+    FittedNetwork,
     ForwardSelection,
     GradientMetric,
     Group,
@@ -40,8 +43,11 @@ shared!(
     Model,
     ModelParts,
     MultivariateRvm,
+    Network,
+    NetworkOnComponents,
     Nystrom,
     Penalty,
+    Perceptron,
     Pilot<'static>,
     Posterior,
     Progress,

@@ -14,6 +14,7 @@ mod metric;
 mod multivariate;
 mod nystrom;
 mod parts;
+mod perceptron;
 mod problems;
 mod streams;
 mod tipping;

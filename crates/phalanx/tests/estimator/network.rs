@@ -1,0 +1,103 @@
+//! Residual codes, coverage and a network: the road of the default preset, made small.
+
+use std::sync::LazyLock;
+
+use phalanx::{
+    Error, Estimator, NetworkTraining, NominalScenes, Part, Preset, Regression, Regressor, Shard,
+    Silent, Training,
+};
+use phalanx_hand::{Dof, HandShape, Pose};
+use phalanx_rvm::Perceptron;
+
+use crate::desk::{difference_deg, estimate, masks, mean, poses, top, unseen};
+
+/// The default preset with few of everything.
+fn training() -> Training {
+    let preset = Preset::default().training();
+    let Regressor::Network(network) = preset.regressor else { unreachable!("it is a network") };
+    let perceptron = Perceptron {
+        hidden: vec![32; 3],
+        epochs: 400,
+        batch: 16,
+        dropout: 0.0,
+        ..network.perceptron
+    };
+    let regressor = Regressor::Network(NetworkTraining { components: 20, perceptron, ..network });
+    let mut vocabulary = preset.vocabulary;
+    (vocabulary.centres, vocabulary.most_samples) = (6, 2000);
+    Training { vocabulary, regressor, ..preset }
+}
+
+static LEARNT: LazyLock<Estimator> =
+    LazyLock::new(|| training().run(&top(), &HandShape::adult(), &poses(), &Silent).unwrap());
+
+/// As quick to learn as can be.
+fn hasty() -> Training {
+    let mut training = training();
+    if let Regressor::Network(network) = &mut training.regressor {
+        network.perceptron.epochs = 2;
+    }
+    training
+}
+
+/// The part of a shard, over more than one block of scenes.
+fn part(shard: Shard) -> Part {
+    let (rig, hand) = (top(), HandShape::adult());
+    let poses: Vec<Pose> = poses().into_iter().cycle().take(1030).collect();
+    let scenes = NominalScenes { rig: &rig, hand: &hand, poses: &poses };
+    hasty().shard(&rig, &hand, &scenes, shard, &Silent).unwrap()
+}
+
+#[test]
+fn poses_between_those_learnt_are_estimated() {
+    let errors: Vec<f64> = unseen()
+        .iter()
+        .map(|pose| difference_deg(&estimate(&LEARNT, &masks(&top(), pose)).unwrap().pose, pose))
+        .collect();
+    assert!(mean(errors.iter().copied()) < 3.0, "{errors:?}");
+}
+
+#[test]
+fn every_angle_that_varies_has_a_deviation() {
+    let found = estimate(&LEARNT, &masks(&top(), &unseen()[3])).unwrap();
+    for dof in Dof::ALL.into_iter().filter(|dof| dof.is_internal()) {
+        assert!(found.std[dof.index()] > 0.0 && found.std[dof.index()] < 0.5, "{dof}");
+    }
+}
+
+#[test]
+fn what_is_saved_is_loaded_and_a_cut_payload_refused() {
+    let bytes = LEARNT.to_bytes().unwrap();
+    assert_eq!(&Estimator::from_bytes(&bytes).unwrap(), &*LEARNT);
+    assert!(matches!(LEARNT.regression(), Regression::Network(_)));
+    for length in (0..bytes.len()).step_by(bytes.len() / 40) {
+        assert!(Estimator::from_bytes(&bytes[..length]).is_err());
+    }
+}
+
+#[test]
+fn parts_in_any_order_and_threads_are_the_bytes_of_one_run() {
+    let whole = part(Shard::WHOLE).finish(&Silent).unwrap().to_bytes().unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+    let joined = pool.install(|| {
+        let [first, second] = [1, 2].map(|index| part(Shard::new(index, 2).unwrap()));
+        let mut read = Part::from_bytes(&second.to_bytes().unwrap()).unwrap();
+        assert_eq!(read, second);
+        read.merge(first).unwrap();
+        read.finish(&Silent).unwrap().to_bytes().unwrap()
+    });
+    assert!(joined == whole);
+}
+
+#[test]
+fn a_part_whose_samples_are_not_its_blocks_is_refused() {
+    let mut both = part(Shard::new(1, 2).unwrap());
+    let error = both.merge(both.clone()).unwrap_err();
+    assert!(matches!(error, Error::Overlap { .. }), "{error}");
+}
+
+#[test]
+fn a_network_learns_in_shards_only() {
+    let x = faer::Mat::from_fn(2, 4, |i, j| (i + j) as f64);
+    assert!(matches!(hasty().regressor.fit(&x, &x), Err(Error::InShardsOnly { .. })));
+}

@@ -1,0 +1,208 @@
+//! The perceptron: what it learns, what it says of itself, what it refuses.
+
+use faer::{Mat, MatRef};
+use phalanx_rvm::{
+    Block, Components, Error, FittedNetwork, Network, NetworkOnComponents, Perceptron, Projection,
+    ProjectionParts, Scratch,
+};
+use proptest::prelude::*;
+
+use crate::problems::{Source, few};
+
+fn small() -> Perceptron {
+    Perceptron { hidden: vec![16, 16], epochs: 30, batch: 32, rate: 5e-3, dropout: 0.0, seed: 3 }
+}
+
+fn single(x: MatRef<'_, f64>) -> Mat<f32> {
+    Mat::from_fn(x.nrows(), x.ncols(), |i, j| x[(i, j)] as f32)
+}
+
+fn fit(fitter: &Perceptron, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> FittedNetwork {
+    fitter.fit(single(x).as_ref(), y).expect("a network")
+}
+
+fn predict(network: &Network, x: MatRef<'_, f64>) -> (Mat<f64>, Vec<f64>) {
+    let (mut mean, mut std) = (vec![0.0; network.outputs()], vec![0.0; network.outputs()]);
+    let (mut scratch, mut all) = (Scratch::default(), Mat::zeros(network.outputs(), x.ncols()));
+    for t in 0..x.ncols() {
+        let input: Vec<f64> = x.col(t).iter().copied().collect();
+        network.predict_into(&input, &mut scratch, &mut mean, &mut std).unwrap();
+        all.col_as_slice_mut(t).copy_from_slice(&mean);
+    }
+    (all, std)
+}
+
+/// Two targets of two inputs.
+fn bent(seed: u64, samples: usize) -> (Mat<f64>, Mat<f64>) {
+    let x = Source::new(seed).matrix(2, samples);
+    let y = Mat::from_fn(2, samples, |j, t| match j {
+        0 => (2.0 * x[(0, t)]).sin() + x[(1, t)],
+        _ => x[(0, t)] * x[(1, t)],
+    });
+    (x, y)
+}
+
+proptest! {
+    #![proptest_config(few())]
+
+    /// Deviations are the root mean square errors of every 16th sample.
+    #[test]
+    fn deviations_are_of_samples_that_were_not_learnt_from(seed in any::<u64>()) {
+        let (x, y) = bent(seed, 320);
+        let (mean, std) = predict(&fit(&small(), x.as_ref(), y.as_ref()).network, x.as_ref());
+        for (j, std) in std.into_iter().enumerate() {
+            let squares = (15..320).step_by(16).map(|t| (mean[(j, t)] - y[(j, t)]).powi(2));
+            let expected = (squares.sum::<f64>() / 20.0).sqrt();
+            prop_assert!((std - expected).abs() < 1e-4 * (1.0 + expected), "{} {}", std, expected);
+        }
+    }
+
+    /// Units do not matter: neither those of the inputs together, nor those of each target.
+    #[test]
+    fn units_do_not_matter(seed in any::<u64>(), scale in 1..10_i32, shift in -100.0..100.0_f64) {
+        let (x, y) = bent(seed, 200);
+        let scale = 2.0_f64.powi(scale); // exact
+        let (plain, _) = predict(&fit(&small(), x.as_ref(), y.as_ref()).network, x.as_ref());
+        let other_x = Mat::from_fn(2, 200, |i, t| scale * x[(i, t)]);
+        let other_y = Mat::from_fn(2, 200, |j, t| shift + scale * y[(j, t)]);
+        let other = fit(&small(), other_x.as_ref(), other_y.as_ref());
+        let (other, _) = predict(&other.network, other_x.as_ref());
+        for t in 0..200 {
+            for j in 0..2 {
+                let back = (other[(j, t)] - shift) / scale;
+                // Steps are many, and the rounding of the shifted targets grows with them.
+                prop_assert!((back - plain[(j, t)]).abs() < 0.05, "{} {}", back, plain[(j, t)]);
+            }
+        }
+    }
+
+    /// The components are the inputs turned: what is kept of a block has a total variance of 1, and
+    /// with all components distances keep their proportions.
+    #[test]
+    fn components_turn_and_scale_blocks(seed in any::<u64>(), first in 1..4_usize) {
+        let x = Source::new(seed).matrix(first + 3, 60);
+        let blocks = [first, 3].map(|inputs| Block { inputs, components: inputs });
+        let components = Components::of(x.as_ref(), &blocks).unwrap();
+        prop_assert_eq!((components.inputs(), components.outputs()), (first + 3, first + 3));
+        let z = components.apply(x.as_ref()).unwrap();
+        for (start, count) in [(0, first), (first, 3)] {
+            let own = z.subrows(start, count);
+            prop_assert!((own.squared_norm_l2() / 60.0 - 1.0).abs() < 1e-4);
+            let ratio = |t: usize| {
+                let raw = x.subrows(start, count);
+                (own.col(t) - own.col(0)).norm_l2() / (raw.col(t) - raw.col(0)).norm_l2()
+            };
+            prop_assert!((2..60).all(|t| (ratio(t) / ratio(1) - 1.0).abs() < 1e-3));
+        }
+    }
+}
+
+#[test]
+fn a_bent_surface_is_learnt() {
+    let (x, y) = bent(1, 3000);
+    let fitter = Perceptron { hidden: vec![32, 32], epochs: 60, ..small() };
+    let fitted = fit(&fitter, x.as_ref(), y.as_ref());
+    let (new_x, new_y) = bent(2, 300);
+    let (mean, _) = predict(&fitted.network, new_x.as_ref());
+    let error = (&mean - &new_y).norm_l1() / 600.0;
+    assert!(error < 0.05, "{error}");
+    let course = &fitted.report.traces[0].objective;
+    assert_eq!(course.len(), 60);
+    assert!(course[59] < 0.3 * course[0], "{course:?}");
+}
+
+#[test]
+fn any_number_of_threads_and_dropout_give_the_same_bits() {
+    let (x, y) = bent(5, 500);
+    let fitter = Perceptron { hidden: vec![80, 80], dropout: 0.3, epochs: 3, ..small() };
+    let of_threads = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| fit(&fitter, x.as_ref(), y.as_ref()))
+    };
+    assert!(of_threads(1) == of_threads(3));
+    let other = fit(&Perceptron { seed: 4, ..fitter.clone() }, x.as_ref(), y.as_ref());
+    assert!(other != of_threads(1));
+}
+
+#[test]
+fn what_does_not_vary_stays_and_is_certain() {
+    let (x, mut y) = bent(7, 64);
+    y.row_mut(1).fill(4.5);
+    let (mean, std) = predict(&fit(&small(), x.as_ref(), y.as_ref()).network, x.as_ref());
+    assert!((0..64).all(|t| mean[(1, t)] == 4.5) && std[1] == 0.0 && std[0] > 0.0);
+    y.fill(-1.25);
+    let (mean, std) = predict(&fit(&small(), x.as_ref(), y.as_ref()).network, x.as_ref());
+    assert!(mean.col_iter().all(|c| c.iter().all(|&v| v == -1.25)) && std == [0.0, 0.0]);
+    // One sample is the mean.
+    let one = fit(&small(), x.subcols(0, 1), mean.subcols(0, 1));
+    assert_eq!(predict(&one.network, x.subcols(0, 1)).0, mean.subcols(0, 1));
+}
+
+#[test]
+fn what_cannot_be_learnt_from_is_named() {
+    let (x, y) = bent(9, 40);
+    let x = single(x.as_ref());
+    let refused = |fitter: Perceptron| fitter.fit(x.as_ref(), y.as_ref()).unwrap_err().to_string();
+    for (fitter, name) in [
+        (Perceptron { epochs: 0, ..small() }, "epochs"),
+        (Perceptron { batch: 0, ..small() }, "batch"),
+        (Perceptron { hidden: vec![4, 0], ..small() }, "hidden"),
+        (Perceptron { rate: f64::NAN, ..small() }, "rate"),
+        (Perceptron { dropout: 1.0, ..small() }, "dropout"),
+    ] {
+        assert!(refused(fitter).starts_with(name), "{name}");
+    }
+    let fewer = small().fit(x.as_ref(), y.subcols(0, 39));
+    assert!(matches!(fewer, Err(Error::Shape { .. })));
+    let mut spoilt = x.clone();
+    spoilt[(1, 3)] = f32::INFINITY;
+    let bad = small().fit(spoilt.as_ref(), y.as_ref()).unwrap_err();
+    assert!(matches!(bad, Error::BadValue { what: "x", row: 1, column: 3, .. }), "{bad}");
+    let none = small().fit(x.subcols(0, 0), y.subcols(0, 0));
+    assert!(matches!(none, Err(Error::Empty { .. })));
+}
+
+fn layer(inputs: usize, outputs: usize) -> Projection {
+    let (matrix, offset) = (vec![0.5; inputs * outputs], vec![0.0; outputs]);
+    Projection::from_parts(ProjectionParts { inputs, matrix, offset }).unwrap()
+}
+
+#[test]
+fn parts_that_do_not_fit_are_refused() {
+    assert!(Network::from_parts(vec![layer(3, 2), layer(2, 1)], vec![0.1]).is_ok());
+    for (layers, std) in [
+        (vec![], vec![]),
+        (vec![layer(3, 2), layer(3, 1)], vec![0.1]),
+        (vec![layer(3, 2)], vec![0.1]),
+        (vec![layer(3, 1)], vec![-0.1]),
+        (vec![layer(3, 1)], vec![f64::NAN]),
+    ] {
+        assert!(Network::from_parts(layers, std).is_err());
+    }
+    let network = Network::from_parts(vec![layer(3, 1)], vec![0.1]).unwrap();
+    let components = |outputs| Components::from_parts(vec![layer(2, 1), layer(1, outputs)]);
+    assert!(NetworkOnComponents::from_parts(components(1), network.clone()).is_err());
+    let own = NetworkOnComponents::from_parts(components(2), network).unwrap();
+    assert_eq!((own.inputs(), own.outputs()), (3, 1));
+    let (mut mean, mut std) = ([0.0], [0.0]);
+    let short = own.predict_into(&[1.0, 2.0], &mut Scratch::default(), &mut mean, &mut std);
+    assert!(matches!(short, Err(Error::Shape { .. })));
+    own.predict_into(&[1.0, 2.0, 4.0], &mut Scratch::default(), &mut mean, &mut std).unwrap();
+    assert_eq!((mean, std), ([0.5 * (1.5 + 2.0 + 2.0)], [0.1]));
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn stored_networks_come_back_and_spoilt_ones_do_not() {
+    let network = Network::from_parts(vec![layer(3, 2), layer(2, 1)], vec![0.1]).unwrap();
+    let own = NetworkOnComponents::from_parts(Components::from_parts(vec![layer(4, 3)]), network);
+    let own = own.unwrap();
+    let bytes = postcard::to_allocvec(&own).unwrap();
+    assert_eq!(postcard::from_bytes::<NetworkOnComponents>(&bytes).unwrap(), own);
+    // A first block of five inputs, of which there are four times three numbers.
+    let mut spoilt = bytes.clone();
+    assert_eq!(spoilt[1], 4);
+    spoilt[1] = 5;
+    assert!(postcard::from_bytes::<NetworkOnComponents>(&spoilt).is_err());
+    assert!(postcard::from_bytes::<NetworkOnComponents>(&bytes[..bytes.len() - 1]).is_err());
+}
