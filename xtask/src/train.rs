@@ -74,7 +74,7 @@ pub(crate) enum PresetName {
     Fast,
     /// 20,000 scenes.
     Default,
-    /// 80,000 scenes.
+    /// 120,000 scenes.
     Best,
 }
 

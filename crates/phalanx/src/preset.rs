@@ -16,7 +16,7 @@ pub enum Preset {
     /// A few minutes.
     #[default]
     Balanced,
-    /// Four times as many scenes as `Balanced`, and a wider network.
+    /// Six times as many scenes as `Balanced`, and a wider network.
     Best,
 }
 
@@ -29,7 +29,7 @@ impl Preset {
         match self {
             Self::Fast => 4000,
             Self::Balanced => 20_000,
-            Self::Best => 80_000,
+            Self::Best => 120_000,
         }
     }
 
