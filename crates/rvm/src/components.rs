@@ -49,7 +49,8 @@ impl Components {
 
     /// Length K of an input.
     pub fn inputs(&self) -> usize {
-        self.blocks.iter().map(Projection::inputs).sum()
+        // A map to no numbers at all may say that it reads any number of them.
+        self.blocks.iter().map(Projection::inputs).fold(0, usize::saturating_add)
     }
 
     /// How many components there are of all blocks.

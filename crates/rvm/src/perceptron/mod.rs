@@ -31,8 +31,7 @@ const HELD_OUT: usize = 16;
 /// these, one for each target, and the trace holds their mean absolute error, in standardised units,
 /// after each epoch.
 ///
-/// Where targets depend on many inputs at once and samples go into the tens of thousands, it is
-/// more accurate than any Gaussian kernel here, and predicts as fast as some hundreds of Gaussians.
+/// For targets that depend on many inputs at once, and samples that go into the tens of thousands.
 ///
 /// ```
 /// use phalanx_rvm::{Perceptron, faer::Mat};

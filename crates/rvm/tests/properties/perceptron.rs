@@ -184,6 +184,10 @@ fn parts_that_do_not_fit_are_refused() {
     assert!(NetworkOnComponents::from_parts(components(1), network.clone()).is_err());
     let own = NetworkOnComponents::from_parts(components(2), network).unwrap();
     assert_eq!((own.inputs(), own.outputs()), (3, 1));
+    // So many inputs that their number overflows, of which none is read.
+    let nothing = ProjectionParts { inputs: usize::MAX, matrix: vec![], offset: vec![] };
+    let nothing = Projection::from_parts(nothing).unwrap();
+    assert_eq!(Components::from_parts(vec![nothing.clone(), nothing]).inputs(), usize::MAX);
     let (mut mean, mut std) = ([0.0], [0.0]);
     let short = own.predict_into(&[1.0, 2.0], &mut Scratch::default(), &mut mean, &mut std);
     assert!(matches!(short, Err(Error::Shape { .. })));
