@@ -14,7 +14,7 @@ const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", 
 
 /// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
 /// and to [`finish`](Self::finish) the estimator. For most regressors that is sums, whose size does
-/// not depend on the number of scenes; [`Regressor::Network`] keeps what it reads of each.
+/// not depend on the number of scenes; [`Regressor::Network`](crate::Regressor::Network) keeps what it reads of each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     basis: Basis,
@@ -34,7 +34,7 @@ impl Training {
     /// run of [`Shard::WHOLE`].
     ///
     /// The codebooks are learnt from at most a thousand scenes, evenly spaced, and the regressor
-    /// has at most [`Regressor::CANDIDATES`] Gaussians. `rig` and `hand` are what the estimator
+    /// has at most [`Regressor::CANDIDATES`](crate::Regressor::CANDIDATES) Gaussians. `rig` and `hand` are what the estimator
     /// takes pictures to be of, whatever the scenes are.
     ///
     /// # Errors
