@@ -14,7 +14,8 @@ const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", 
 
 /// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
 /// and to [`finish`](Self::finish) the estimator. For most regressors that is sums, whose size does
-/// not depend on the number of scenes; [`Regressor::Network`](crate::Regressor::Network) keeps what it reads of each.
+/// not depend on the number of scenes; a [network](crate::Regressor::Network) keeps what it reads of
+/// each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     basis: Basis,
@@ -34,8 +35,8 @@ impl Training {
     /// run of [`Shard::WHOLE`].
     ///
     /// The codebooks are learnt from at most a thousand scenes, evenly spaced, and the regressor
-    /// has at most [`Regressor::CANDIDATES`](crate::Regressor::CANDIDATES) Gaussians. `rig` and `hand` are what the estimator
-    /// takes pictures to be of, whatever the scenes are.
+    /// has a [limited number](crate::Regressor::CANDIDATES) of Gaussians. `rig` and `hand` are what
+    /// the estimator takes pictures to be of, whatever the scenes are.
     ///
     /// # Errors
     /// An unusable rig or hand, fewer than two scenes that can be described, a regressor that
