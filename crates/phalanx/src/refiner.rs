@@ -16,10 +16,6 @@ use crate::{
 /// Poses from the prior that tell how angles go together.
 const POSTURES: u64 = 2000;
 
-/// How many times an estimate's deviation its prior has: errors have heavier tails than a Gaussian of
-/// their own deviation, and where they are large is where the silhouettes should be believed.
-const TAILS: f64 = 1.8;
-
 /// Where borders stay further apart than this, px, other starts are worth their time. Two views leave
 /// more open, so that what fits well may still be wrong; a hand that had to be doubted never fits as well.
 fn apart(refined: &Refined) -> f64 {
@@ -140,8 +136,7 @@ impl Refiner {
     /// # Errors
     /// An estimate that is not finite.
     pub fn prior(&self, pose: &Pose, std: &[f64; Dof::COUNT]) -> Result<PosePrior> {
-        let wide = std.map(|std| TAILS * std);
-        Ok(PosePrior::independent(*pose, &wide)?.and(&self.postures)?)
+        Ok(PosePrior::independent(*pose, std)?.and(&self.postures)?)
     }
 
     /// One frame to calibrate a hand from.

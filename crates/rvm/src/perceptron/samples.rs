@@ -1,0 +1,126 @@
+//! What a perceptron is fitted to, scaled, and how far off it is.
+
+use faer::{ColRef, Mat, MatRef};
+
+use crate::perceptron::layers::{Layers, Pass};
+use crate::{Error, Result, Standardiser};
+
+/// Of so many samples one is held out: it tells how far predictions are off.
+const HELD_OUT: usize = 16;
+
+/// The samples, scaled.
+pub(super) struct Samples {
+    /// K×I.
+    pub(super) x: Mat<f32>,
+    /// Those targets that vary, m×I.
+    pub(super) y: Mat<f32>,
+    pub(super) learnt_from: Vec<usize>,
+    held_out: Vec<usize>,
+}
+
+/// Refuses no inputs, and such as are not finite.
+pub(super) fn check_inputs(x: MatRef<'_, f32>) -> Result<()> {
+    let (rows, columns) = x.shape();
+    if rows == 0 || columns == 0 {
+        return Err(Error::Empty { what: "x", rows, columns });
+    }
+    for (column, values) in x.col_iter().enumerate() {
+        if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+            let value = f64::from(x[(row, column)]);
+            return Err(Error::BadValue { what: "x", row, column, value });
+        }
+    }
+    Ok(())
+}
+
+/// How inputs are brought to means of zero and a mean variance of 1.
+pub(super) struct Scaling {
+    pub(super) mean: Vec<f64>,
+    /// What they are multiplied by; 0 where nothing varies.
+    pub(super) factor: f64,
+}
+
+impl Scaling {
+    pub(super) fn of(x: MatRef<'_, f32>) -> Self {
+        let count = x.ncols() as f64;
+        let mut mean = vec![0.0; x.nrows()];
+        for column in x.col_iter() {
+            mean.iter_mut().zip(column.iter()).for_each(|(sum, &v)| *sum += f64::from(v) / count);
+        }
+        let offset = |column: ColRef<'_, f32>| -> f64 {
+            column.iter().zip(&mean).map(|(&v, mean)| (f64::from(v) - mean).powi(2)).sum()
+        };
+        let squares: f64 = x.col_iter().map(offset).sum();
+        let variance = squares / (count * x.nrows() as f64);
+        let factor = if variance > 0.0 { variance.sqrt().recip() } else { 0.0 };
+        Self { mean, factor }
+    }
+}
+
+impl Samples {
+    pub(super) fn new(
+        x: MatRef<'_, f32>,
+        y: MatRef<'_, f64>,
+        scaling: &Scaling,
+        targets: &Standardiser,
+    ) -> Self {
+        let varying = targets.varying();
+        let scaled =
+            |k: usize, i: usize| ((f64::from(x[(k, i)]) - scaling.mean[k]) * scaling.factor) as f32;
+        let target = |j: usize, i: usize| targets.scaled(varying[j], y[(varying[j], i)]) as f32;
+        let is_held_out = |i: &usize| i % HELD_OUT == HELD_OUT - 1;
+        let (held_out, learnt_from) = (0..x.ncols()).partition(is_held_out);
+        Self {
+            x: Mat::from_fn(x.nrows(), x.ncols(), scaled),
+            y: Mat::from_fn(varying.len(), x.ncols(), target),
+            learnt_from,
+            held_out,
+        }
+    }
+
+    /// What tells how far predictions are off: the samples held out or, of a handful, all.
+    fn judges(&self) -> &[usize] {
+        if self.held_out.is_empty() { &self.learnt_from } else { &self.held_out }
+    }
+
+    /// The differences from the targets of all judges, one after the other.
+    fn differences(&self, layers: &Layers) -> Vec<f32> {
+        let mut pass = Pass::default();
+        let mut differences = Vec::with_capacity(self.judges().len() * self.y.nrows());
+        for some in self.judges().chunks(Pass::BLOCK) {
+            pass.forward(layers, gathered(self.x.as_ref(), some), None, &mut |_| Vec::new());
+            for (column, &sample) in pass.output_columns().zip(some) {
+                let pairs = column.iter().zip(self.y.col_as_slice(sample));
+                differences.extend(pairs.map(|(value, target)| value - target));
+            }
+        }
+        differences
+    }
+
+    pub(super) fn mean_error(&self, layers: &Layers) -> f64 {
+        let differences = self.differences(layers);
+        differences.iter().map(|d| f64::from(d.abs())).sum::<f64>() / differences.len() as f64
+    }
+
+    /// The root mean square error of each target, in its own unit; 0 of those that do not vary.
+    pub(super) fn deviations(&self, layers: &Layers, targets: &Standardiser) -> Vec<f64> {
+        let mut deviations = vec![0.0; targets.scale().len()];
+        let varying = targets.varying();
+        if varying.is_empty() {
+            return deviations;
+        }
+        let differences = self.differences(layers);
+        for (j, &target) in varying.iter().enumerate() {
+            let own = differences.iter().skip(j).step_by(varying.len());
+            let squares: f64 = own.map(|d| f64::from(*d).powi(2)).sum();
+            let mean = squares / self.judges().len() as f64;
+            deviations[target] = mean.sqrt() * targets.scale()[target];
+        }
+        deviations
+    }
+}
+
+/// Some columns, one after the other.
+pub(super) fn gathered(x: MatRef<'_, f32>, samples: &[usize]) -> Vec<f32> {
+    samples.iter().flat_map(|&sample| x.col(sample).iter().copied()).collect()
+}
