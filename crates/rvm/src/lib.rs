@@ -49,7 +49,7 @@ pub use metric::{GradientMetric, Group, Metric};
 pub use model::{Basis, Factor, Model, ModelParts, Posterior, Scratch};
 pub use multivariate::MultivariateRvm;
 pub use nystrom::{Deviation, Nystrom, Penalty};
-pub use perceptron::{FittedNetwork, Network, NetworkOnComponents, Perceptron};
+pub use perceptron::{FittedNetwork, Network, NetworkOnComponents, NetworkParts, Perceptron};
 pub use principal::Block;
 pub use projected::Projected;
 pub use projection::{Projection, ProjectionParts};

@@ -10,7 +10,7 @@ use faer::{Mat, MatRef};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-pub use network::Network;
+pub use network::{Network, NetworkParts};
 pub use on_components::NetworkOnComponents;
 
 use crate::perceptron::adam::Adam;
@@ -108,10 +108,12 @@ impl Perceptron {
                 observe(epoch);
             });
         }
-        let network = Network::from_parts(
-            folded(&layers, &scaling, &targets)?,
-            samples.deviations(&layers, &targets),
-        )?;
+        let network = Network::from_parts(NetworkParts {
+            layers: folded(&layers, &scaling, &targets)?,
+            mean: targets.mean().to_vec(),
+            scale: targets.scale().to_vec(),
+            std: samples.deviations(&layers, &targets),
+        })?;
         let trace = Trace { converged: true, objective: errors };
         Ok(FittedNetwork { network, report: Report::new(vec![trace], None) })
     }
@@ -202,7 +204,8 @@ fn shuffle(order: &mut [usize], random: &mut Pcg64Mcg) {
     }
 }
 
-/// The layers with the scaling of inputs in the first and of targets in the last.
+/// The layers with the scaling of inputs in the first, and nothing in the last for targets that do not
+/// vary.
 fn folded(layers: &Layers, scaling: &Scaling, targets: &Standardiser) -> Result<Vec<Projection>> {
     let last = layers.count() - 1;
     let varying = targets.varying();
@@ -223,16 +226,17 @@ fn folded(layers: &Layers, scaling: &Scaling, targets: &Standardiser) -> Result<
             }
         }
         if layer == last {
-            let mut whole = Mat::zeros(targets.scale().len(), matrix.ncols());
-            let mut constants = targets.mean().to_vec();
+            let (mut whole, mut all) = (
+                Mat::zeros(targets.scale().len(), matrix.ncols()),
+                vec![0.0; targets.scale().len()],
+            );
             for (row, &target) in varying.iter().enumerate() {
-                let scale = targets.scale()[target];
-                constants[target] += scale * offset[row];
+                all[target] = offset[row];
                 for k in 0..matrix.ncols() {
-                    whole[(target, k)] = scale * matrix[(row, k)];
+                    whole[(target, k)] = matrix[(row, k)];
                 }
             }
-            (matrix, offset) = (whole, constants);
+            (matrix, offset) = (whole, all);
         }
         projections.push(Projection::from_parts(ProjectionParts {
             inputs: matrix.ncols(),

@@ -4,9 +4,9 @@ use phalanx_rvm::{
     Basis, Block, Bridges, Cascade, Columns, Components, ConditionalDensity,
     ConditionalDensityParts, Deviation, Error, Factor, Fit, FittedNetwork, ForwardSelection,
     GradientMetric, Group, Healed, Hypothesis, Kernel, KernelRidge, Lambda, LearntWidths, Metric,
-    Model, ModelParts, MultivariateRvm, Network, NetworkOnComponents, Nystrom, Penalty, Perceptron,
-    Pilot, Posterior, Progress, Projected, Projection, ProjectionParts, Report, Ridge, Scratch,
-    Standardiser, Stop, Sums, SumsParts, Tie, Tipping, Trace, Width,
+    Model, ModelParts, MultivariateRvm, Network, NetworkOnComponents, NetworkParts, Nystrom,
+    Penalty, Perceptron, Pilot, Posterior, Progress, Projected, Projection, ProjectionParts,
+    Report, Ridge, Scratch, Standardiser, Stop, Sums, SumsParts, Tie, Tipping, Trace, Width,
 };
 
 const fn shared<T: Send + Sync>() {}
@@ -45,6 +45,7 @@ shared!(
     MultivariateRvm,
     Network,
     NetworkOnComponents,
+    NetworkParts,
     Nystrom,
     Penalty,
     Perceptron,
