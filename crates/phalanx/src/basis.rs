@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape};
-use phalanx_rvm::{Columns, Components, Kernel, Metric, Pilot};
+use phalanx_rvm::{Columns, Components, Metric, Pilot};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -122,25 +122,29 @@ impl Basis {
                 return Err(Error::Mismatch { part, found, expected });
             }
         }
-        if self.regressor.needs_samples() {
-            return Ok(Vec::new());
-        }
         let x = MatRef::from_column_major_slice(&self.pilot_x, self.read(), samples);
         let y = MatRef::from_column_major_slice(&self.pilot_y, Dof::COUNT, samples);
-        let Reading::Metric(metric) = &self.reading else {
-            let pilot = Pilot { x, y, samples: &self.pilot };
-            return Ok(vec![Columns::new(&pilot, self.regressor.summed()?)?]);
-        };
-        let Kernel::Gaussian(width) = self.regressor.summed()? else {
-            return Err(Error::Mismatch { part: "learnt metrics", found: 1, expected: 0 });
-        };
-        let of_group = |group: usize| {
-            let y = metric.targets(group, y);
-            let x = metric.part(group, x);
-            let pilot = Pilot { x, y: y.as_ref(), samples: &self.pilot };
-            Ok(Columns::in_proportion(&pilot, width)?)
-        };
-        (0..metric.groups.len()).into_par_iter().map(of_group).collect()
+        match (&self.regressor, &self.reading) {
+            (Regressor::Network(_), Reading::Components(_)) => Ok(Vec::new()),
+            (Regressor::LearntMetric(fitter), Reading::Metric(metric)) => {
+                let of_group = |group: usize| {
+                    let y = metric.targets(group, y);
+                    let x = metric.part(group, x);
+                    let pilot = Pilot { x, y: y.as_ref(), samples: &self.pilot };
+                    Ok(Columns::in_proportion(&pilot, fitter.regression.width)?)
+                };
+                (0..metric.groups.len()).into_par_iter().map(of_group).collect()
+            }
+            (Regressor::Network(_) | Regressor::LearntMetric(_), _)
+            | (_, Reading::Components(_) | Reading::Metric(_)) => Err(Error::FileContent {
+                what: "training part",
+                reason: "what it reads is not what its regressor reads".to_owned(),
+            }),
+            (regressor, Reading::Whole) => {
+                let pilot = Pilot { x, y, samples: &self.pilot };
+                Ok(vec![Columns::new(&pilot, regressor.summed()?)?])
+            }
+        }
     }
 }
 

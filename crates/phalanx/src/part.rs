@@ -171,9 +171,10 @@ mod tests {
     use std::collections::BTreeMap;
 
     use phalanx_hand::{Dof, Pose};
-    use phalanx_rvm::Ridge;
+    use phalanx_rvm::{Components, Ridge};
 
     use super::*;
+    use crate::basis::Reading;
     use crate::{NominalScenes, Regressor, Silent};
 
     fn part() -> Part {
@@ -199,13 +200,14 @@ mod tests {
     fn parts_that_contradict_themselves_are_refused() {
         let good = part();
         assert_eq!(Part::from_bytes(&good.to_bytes().unwrap()).unwrap(), good);
-        let spoils: [fn(&mut Part); 8] = [
+        let spoils: [fn(&mut Part); 9] = [
             |part| part.blocks = vec![0, 0],
             |part| part.blocks = vec![1],
             |part| part.left_out = usize::MAX,
             |part| part.basis.pilot.swap(0, 1),
             |part| part.basis.pilot_x.truncate(3),
             |part| part.scenes = usize::MAX,
+            |part| part.basis.reading = Reading::Components(Components::from_parts(Vec::new())),
             |part| part.gathered = Gathered::Sums(Vec::new()),
             |part| part.gathered = Gathered::Samples(BTreeMap::new()),
         ];

@@ -34,6 +34,12 @@ pub(crate) fn length(what: &'static str, expected: usize, found: usize) -> Resul
     if expected == found { Ok(()) } else { Err(Error::Shape { what, expected, found }) }
 }
 
+/// Refuses room for other than so many means and standard deviations.
+pub(crate) fn answers(outputs: usize, mean: &[f64], std: &[f64]) -> Result<()> {
+    length("means", outputs, mean.len())?;
+    length("standard deviations", outputs, std.len())
+}
+
 /// Refuses anything but a positive, finite number.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<()> {
     if value > 0.0 && value.is_finite() {

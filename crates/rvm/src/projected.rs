@@ -71,8 +71,7 @@ impl Projected {
         mean: &mut [f64],
         std: &mut [f64],
     ) -> Result<()> {
-        check::length("means", self.outputs(), mean.len())?;
-        check::length("standard deviations", self.outputs(), std.len())?;
+        check::answers(self.outputs(), mean, std)?;
         let (mut single, mut z) =
             (std::mem::take(&mut scratch.single), std::mem::take(&mut scratch.projected));
         self.metric.projection.apply_into(x, &mut single, &mut z)?;

@@ -60,13 +60,18 @@ impl Projection {
         for (column, mean) in columns {
             offset.iter_mut().zip(column.iter()).for_each(|(sum, value)| *sum -= value * mean);
         }
+        Self::affine(matrix, &offset)
+    }
+
+    /// The map of this matrix, d×K, and offset.
+    pub(crate) fn affine(matrix: MatRef<'_, f64>, offset: &[f64]) -> Result<Self> {
         Self::from_parts(ProjectionParts {
             inputs: matrix.ncols(),
             matrix: matrix
                 .col_iter()
                 .flat_map(|column| column.iter().map(|&v| v as f32).collect::<Vec<_>>())
                 .collect(),
-            offset: offset.into_iter().map(|v| v as f32).collect(),
+            offset: offset.iter().map(|&v| v as f32).collect(),
         })
     }
 

@@ -8,7 +8,8 @@ use phalanx::{
 };
 use phalanx_hand::HandShape;
 
-use crate::desk::{difference_deg, estimate, masks, mean, poses, top, unseen};
+use crate::desk::{poses, top};
+use crate::roads;
 
 /// The fast preset with few of everything.
 fn training() -> Training {
@@ -28,19 +29,12 @@ static LEARNT: LazyLock<Estimator> =
 
 #[test]
 fn poses_between_those_learnt_are_estimated() {
-    let errors: Vec<f64> = unseen()
-        .iter()
-        .map(|pose| difference_deg(&estimate(&LEARNT, &masks(&top(), pose)).unwrap().pose, pose))
-        .collect();
-    assert!(mean(errors.iter().copied()) < 3.0, "{errors:?}");
+    roads::generalises(&LEARNT);
 }
 
 #[test]
 fn every_angle_that_varies_has_a_deviation() {
-    let found = estimate(&LEARNT, &masks(&top(), &unseen()[3])).unwrap();
-    for dof in phalanx_hand::Dof::ALL.into_iter().filter(|dof| dof.is_internal()) {
-        assert!(found.std[dof.index()] > 0.0 && found.std[dof.index()] < 0.5, "{dof}");
-    }
+    roads::has_deviations(&LEARNT);
 }
 
 #[test]
@@ -57,12 +51,8 @@ fn any_number_of_threads_learns_the_same_bytes() {
 
 #[test]
 fn what_is_saved_is_loaded_and_a_cut_payload_refused() {
-    let bytes = LEARNT.to_bytes().unwrap();
-    assert_eq!(&Estimator::from_bytes(&bytes).unwrap(), &*LEARNT);
     assert!(matches!(LEARNT.regression(), Regression::Projected(_)));
-    for length in (0..bytes.len()).step_by(bytes.len() / 40) {
-        assert!(Estimator::from_bytes(&bytes[..length]).is_err());
-    }
+    roads::survives_its_file(&LEARNT);
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod model_file;
 mod network;
 mod photographs;
 mod refusals;
+mod roads;
 mod shards;
 mod training;
 mod working_size;

@@ -6,10 +6,11 @@ use phalanx::{
     Error, Estimator, NetworkTraining, NominalScenes, Part, Preset, Regression, Regressor, Shard,
     Silent, Training,
 };
-use phalanx_hand::{Dof, HandShape, Pose};
+use phalanx_hand::{HandShape, Pose};
 use phalanx_rvm::Perceptron;
 
-use crate::desk::{difference_deg, estimate, masks, mean, poses, top, unseen};
+use crate::desk::{poses, top};
+use crate::roads;
 
 /// The default preset with few of everything.
 fn training() -> Training {
@@ -50,29 +51,18 @@ fn part(shard: Shard) -> Part {
 
 #[test]
 fn poses_between_those_learnt_are_estimated() {
-    let errors: Vec<f64> = unseen()
-        .iter()
-        .map(|pose| difference_deg(&estimate(&LEARNT, &masks(&top(), pose)).unwrap().pose, pose))
-        .collect();
-    assert!(mean(errors.iter().copied()) < 3.0, "{errors:?}");
+    roads::generalises(&LEARNT);
 }
 
 #[test]
 fn every_angle_that_varies_has_a_deviation() {
-    let found = estimate(&LEARNT, &masks(&top(), &unseen()[3])).unwrap();
-    for dof in Dof::ALL.into_iter().filter(|dof| dof.is_internal()) {
-        assert!(found.std[dof.index()] > 0.0 && found.std[dof.index()] < 0.5, "{dof}");
-    }
+    roads::has_deviations(&LEARNT);
 }
 
 #[test]
 fn what_is_saved_is_loaded_and_a_cut_payload_refused() {
-    let bytes = LEARNT.to_bytes().unwrap();
-    assert_eq!(&Estimator::from_bytes(&bytes).unwrap(), &*LEARNT);
     assert!(matches!(LEARNT.regression(), Regression::Network(_)));
-    for length in (0..bytes.len()).step_by(bytes.len() / 40) {
-        assert!(Estimator::from_bytes(&bytes[..length]).is_err());
-    }
+    roads::survives_its_file(&LEARNT);
 }
 
 #[test]

@@ -16,7 +16,7 @@ pub use on_components::NetworkOnComponents;
 use crate::perceptron::adam::Adam;
 use crate::perceptron::layers::{Layers, Pass};
 use crate::perceptron::samples::{Samples, Scaling, check_inputs, gathered};
-use crate::{Error, Projection, ProjectionParts, Report, Result, Standardiser, Trace, check};
+use crate::{Error, Projection, Report, Result, Standardiser, Trace, check};
 
 /// A multilayer perceptron: layers of x ↦ s(Wx + b), s(z) = z/(1 + e⁻ᶻ) (Elfwing, Uchibe and Doya
 /// 2018), and a linear one after them.
@@ -238,14 +238,7 @@ fn folded(layers: &Layers, scaling: &Scaling, targets: &Standardiser) -> Result<
             }
             (matrix, offset) = (whole, all);
         }
-        projections.push(Projection::from_parts(ProjectionParts {
-            inputs: matrix.ncols(),
-            matrix: matrix
-                .col_iter()
-                .flat_map(|c| c.iter().map(|&v| v as f32).collect::<Vec<_>>())
-                .collect(),
-            offset: offset.into_iter().map(|v| v as f32).collect(),
-        })?);
+        projections.push(Projection::affine(matrix.as_ref(), &offset)?);
     }
     Ok(projections)
 }

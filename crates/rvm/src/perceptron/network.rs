@@ -67,8 +67,7 @@ impl Network {
         mean: &mut [f64],
         std: &mut [f64],
     ) -> Result<()> {
-        check::length("means", self.outputs(), mean.len())?;
-        check::length("standard deviations", self.outputs(), std.len())?;
+        check::answers(self.outputs(), mean, std)?;
         let Scratch { single, hidden, projected, .. } = scratch;
         let NetworkParts { layers, .. } = &self.parts;
         layers[0].apply_into(x, single, hidden)?;
