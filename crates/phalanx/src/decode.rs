@@ -36,6 +36,10 @@ pub fn decode_picture(file: &[u8], most_memory: u64) -> Result<DynamicImage> {
     if format == ImageFormat::Jpeg && is_cut_off(file) {
         return Err(Error::TruncatedPicture);
     }
+    if format == ImageFormat::Png && has_part_of_a_colour(file) {
+        let reason = "a PNG palette ends within a colour".to_owned();
+        return Err(Error::Undecodable { reason });
+    }
     decode(file, format, most_memory).map_err(undecodable)
 }
 
@@ -81,4 +85,20 @@ fn is_cut_off(jpeg: &[u8]) -> bool {
             _ => return false,
         }
     }
+}
+
+/// Whether a PNG file has a palette whose length is no multiple of three. The decoder takes for
+/// granted that there is none, and panics.
+fn has_part_of_a_colour(png: &[u8]) -> bool {
+    const SIGNATURE: usize = 8;
+    const NAME_AND_CHECKSUM: usize = 8;
+    let mut ahead = png.get(SIGNATURE..).unwrap_or_default();
+    while let Some((length, chunk)) = ahead.split_first_chunk() {
+        let length = u32::from_be_bytes(*length) as usize;
+        if chunk.starts_with(b"PLTE") && !length.is_multiple_of(3) {
+            return true;
+        }
+        ahead = chunk.get(length.saturating_add(NAME_AND_CHECKSUM)..).unwrap_or_default();
+    }
+    false
 }

@@ -19,7 +19,7 @@ impl SkinModel {
             "{MAGIC}\nsource {source}\nbits {bits}\nsmoothing {smoothing}\nprior {prior}\n"
         );
         for (bin, (s, n)) in
-            skin.iter().zip(non_skin).enumerate().filter(|(_, (s, n))| **s + **n > 0)
+            skin.iter().zip(non_skin).enumerate().filter(|(_, (s, n))| **s > 0 || **n > 0)
         {
             let (cb, cr) = (bin / params.side(), bin % params.side());
             writeln!(text, "{cb} {cr} {s} {n}").expect("writing to a string does not fail");

@@ -82,6 +82,8 @@ fn truncated_and_damaged_pictures() {
     let middle = damaged.len() / 2;
     damaged[middle] ^= 0x10;
     desk.refuses_file(&damaged, &[]);
+    let half_colour = include_bytes!("../../../../fuzz/corpus/picture/half_colour.png");
+    desk.refuses_file(half_colour, &["palette ends within a colour"]);
 
     let photograph = desk.open("top.png").to_rgb8();
     photograph.save_with_format(desk.path("top.jpg"), ImageFormat::Jpeg).unwrap();
