@@ -44,7 +44,8 @@ pub(crate) struct Arguments {
     /// The hand, TOML; the mean adult of fixtures/ by default.
     #[arg(long, value_name = "FILE.toml")]
     hand: Option<PathBuf>,
-    /// With `--data-set random` or `--preset`, how many independent poses are learnt from: 20,000 by default.
+    /// With `--data-set random` or `--preset`, how many independent poses are learnt from: 20,000, or
+    /// what the preset says, by default.
     #[arg(long, value_name = "N", value_parser = sets::samples)]
     samples: Option<usize>,
     /// With `--data-set random`, give every sample a hand of its own, moved cameras and a ragged
@@ -72,9 +73,9 @@ pub(crate) struct Arguments {
 pub(crate) enum PresetName {
     /// 4,000 scenes.
     Fast,
-    /// 20,000 scenes.
+    /// 64,000 scenes.
     Default,
-    /// 120,000 scenes.
+    /// 200,000 scenes.
     Best,
 }
 
