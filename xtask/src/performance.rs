@@ -205,7 +205,8 @@ fn page(arguments: &Arguments, medians: &Medians, scale: &str) -> Result<String>
          measured on: {}, one thread unless said\n\n\
          Medians, and the 95 % confidence intervals of the medians, by criterion. A target is met\n\
          if the median is within it. On a shared computer figures vary from run to run by more\n\
-         than their intervals say.\n\n\
+         than their intervals say. What whole presets take, 95th percentiles too, is in\n\
+         [presets.md](presets.md), by `cargo xtask presets`.\n\n\
          ## From pictures to a pose\n\n{}\n\
          ## Training\n\n{}\n\
          ## Training on many samples\n\n\

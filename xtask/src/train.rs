@@ -75,7 +75,7 @@ pub(crate) enum PresetName {
     Fast,
     /// 64,000 scenes.
     Default,
-    /// 200,000 scenes.
+    /// 240,000 scenes.
     Best,
 }
 

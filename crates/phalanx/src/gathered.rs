@@ -143,10 +143,8 @@ impl Gathered {
                 Ok(regression)
             }
             Self::Samples(blocks) => {
-                let x: Vec<f32> =
-                    blocks.values().flat_map(|samples| samples.x.iter().copied()).collect();
-                let y: Vec<f64> =
-                    blocks.values().flat_map(|samples| samples.y.iter().copied()).collect();
+                let x = blocks.values().map(|samples| &*samples.x).collect::<Vec<_>>().concat();
+                let y = blocks.values().map(|samples| &*samples.y).collect::<Vec<_>>().concat();
                 let count = y.len() / Dof::COUNT;
                 let x = MatRef::from_column_major_slice(&x, basis.read(), count);
                 let y = MatRef::from_column_major_slice(&y, Dof::COUNT, count);

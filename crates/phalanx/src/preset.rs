@@ -16,7 +16,7 @@ pub enum Preset {
     /// A few minutes. It learns from sixteen times as many scenes as `Fast`, by a network.
     #[default]
     Balanced,
-    /// A quarter of an hour: fifty times as many, and a wider network.
+    /// A quarter of an hour: sixty times as many, and a wider network.
     Best,
 }
 
@@ -29,7 +29,7 @@ impl Preset {
         match self {
             Self::Fast => 4000,
             Self::Balanced => 64_000,
-            Self::Best => 200_000,
+            Self::Best => 240_000,
         }
     }
 

@@ -1,4 +1,4 @@
-//! Draws the outline of the hand in a photograph as an SVG:
+//! Draws the outline of the hand in a photograph as an SVG, a dot where the forearm ends:
 //! `cargo run --example outline -- photograph.jpg > outline.svg`
 
 use phalanx_segmentation::{Cleanup, Silhouette, SkinModel, clean, downsample};
@@ -10,6 +10,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let silhouette = Silhouette::from_mask(&mask)?;
 
     println!(r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 120 90">"#);
+    println!(r#"<rect width="100%" height="100%" fill="white"/>"#);
     for piece in silhouette.contour.pieces() {
         let points: Vec<_> = piece.iter().map(|[x, y]| format!("{x},{y}")).collect();
         println!(r#"<polyline fill="none" stroke="black" points="{}"/>"#, points.join(" "));

@@ -15,7 +15,7 @@ pub use on_components::NetworkOnComponents;
 
 use crate::perceptron::adam::Adam;
 use crate::perceptron::layers::{Layers, Pass};
-use crate::perceptron::samples::{Samples, Scaling, check_inputs, gathered};
+use crate::perceptron::samples::{Samples, Scaling, check_inputs};
 use crate::{Error, Projection, Report, Result, Standardiser, Trace, check};
 
 /// A multilayer perceptron: layers of x ↦ s(Wx + b), s(z) = z/(1 + e⁻ᶻ) (Elfwing, Uchibe and Doya
@@ -100,7 +100,7 @@ impl Perceptron {
         let scaling = Scaling::of(x);
         let samples = Samples::new(x, y, &scaling, &targets);
         let mut random = Pcg64Mcg::seed_from_u64(self.seed);
-        let mut layers = Layers::new(self.widths(&samples), &mut random);
+        let mut layers = Layers::new(self.widths(x.nrows(), &samples), &mut random);
         let mut errors = Vec::with_capacity(self.epochs);
         if samples.y.nrows() > 0 {
             self.descend(&samples, &mut layers, &mut random, &mut |layers, epoch| {
@@ -137,8 +137,8 @@ impl Perceptron {
     }
 
     /// How many numbers go into each layer, and out of the last.
-    fn widths(&self, samples: &Samples) -> Vec<usize> {
-        let mut widths = vec![samples.x.nrows()];
+    fn widths(&self, inputs: usize, samples: &Samples<'_>) -> Vec<usize> {
+        let mut widths = vec![inputs];
         widths.extend(&self.hidden);
         widths.push(samples.y.nrows());
         widths
@@ -146,7 +146,7 @@ impl Perceptron {
 
     fn descend(
         &self,
-        samples: &Samples,
+        samples: &Samples<'_>,
         layers: &mut Layers,
         random: &mut Pcg64Mcg,
         after: &mut dyn FnMut(&Layers, usize),
@@ -165,7 +165,7 @@ impl Perceptron {
                     bytes
                 };
                 let leave_out = (self.dropout > 0.0).then_some(self.dropout);
-                pass.forward(layers, gathered(samples.x.as_ref(), batch), leave_out, &mut bytes);
+                pass.forward(layers, samples.inputs(batch), leave_out, &mut bytes);
                 let count = (batch.len() * samples.y.nrows()) as f32;
                 for (column, &sample) in pass.output_columns().zip(batch) {
                     for (value, target) in column.iter_mut().zip(samples.y.col_as_slice(sample)) {

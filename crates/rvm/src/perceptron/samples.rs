@@ -1,4 +1,4 @@
-//! What a perceptron is fitted to, scaled, and how far off it is.
+//! What a perceptron is fitted to, and how far off it is.
 
 use faer::{ColRef, Mat, MatRef};
 
@@ -8,11 +8,12 @@ use crate::{Error, Result, Standardiser};
 /// Of so many samples one is held out: it tells how far predictions are off.
 const HELD_OUT: usize = 16;
 
-/// The samples, scaled.
-pub(super) struct Samples {
-    /// K×I.
-    pub(super) x: Mat<f32>,
-    /// Those targets that vary, m×I.
+/// The samples.
+pub(super) struct Samples<'a> {
+    /// K×I, as they were given: there may be no room for them twice.
+    x: MatRef<'a, f32>,
+    scaling: &'a Scaling,
+    /// Those targets that vary, m×I, scaled.
     pub(super) y: Mat<f32>,
     pub(super) learnt_from: Vec<usize>,
     held_out: Vec<usize>,
@@ -57,25 +58,31 @@ impl Scaling {
     }
 }
 
-impl Samples {
+impl<'a> Samples<'a> {
     pub(super) fn new(
-        x: MatRef<'_, f32>,
+        x: MatRef<'a, f32>,
         y: MatRef<'_, f64>,
-        scaling: &Scaling,
+        scaling: &'a Scaling,
         targets: &Standardiser,
     ) -> Self {
         let varying = targets.varying();
-        let scaled =
-            |k: usize, i: usize| ((f64::from(x[(k, i)]) - scaling.mean[k]) * scaling.factor) as f32;
         let target = |j: usize, i: usize| targets.scaled(varying[j], y[(varying[j], i)]) as f32;
         let is_held_out = |i: &usize| i % HELD_OUT == HELD_OUT - 1;
         let (held_out, learnt_from) = (0..x.ncols()).partition(is_held_out);
         Self {
-            x: Mat::from_fn(x.nrows(), x.ncols(), scaled),
+            x,
+            scaling,
             y: Mat::from_fn(varying.len(), x.ncols(), target),
             learnt_from,
             held_out,
         }
+    }
+
+    /// The inputs of some samples, scaled, one after the other.
+    pub(super) fn inputs(&self, samples: &[usize]) -> Vec<f32> {
+        let Scaling { mean, factor } = self.scaling;
+        let scaled = |(&value, mean): (&f32, &f64)| ((f64::from(value) - mean) * factor) as f32;
+        samples.iter().flat_map(|&sample| self.x.col(sample).iter().zip(mean).map(scaled)).collect()
     }
 
     /// What tells how far predictions are off: the samples held out or, of a handful, all.
@@ -88,7 +95,7 @@ impl Samples {
         let mut pass = Pass::default();
         let mut differences = Vec::with_capacity(self.judges().len() * self.y.nrows());
         for some in self.judges().chunks(Pass::BLOCK) {
-            pass.forward(layers, gathered(self.x.as_ref(), some), None, &mut |_| Vec::new());
+            pass.forward(layers, self.inputs(some), None, &mut |_| Vec::new());
             for (column, &sample) in pass.output_columns().zip(some) {
                 let pairs = column.iter().zip(self.y.col_as_slice(sample));
                 differences.extend(pairs.map(|(value, target)| value - target));
@@ -118,9 +125,4 @@ impl Samples {
         }
         deviations
     }
-}
-
-/// Some columns, one after the other.
-pub(super) fn gathered(x: MatRef<'_, f32>, samples: &[usize]) -> Vec<f32> {
-    samples.iter().flat_map(|&sample| x.col(sample).iter().copied()).collect()
 }
