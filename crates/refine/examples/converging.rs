@@ -2,6 +2,7 @@
 //! becomes. `cargo run --release -p phalanx-refine --example converging > crates/refine/figures/converging.svg`
 
 use std::error::Error;
+use std::fmt::Write;
 
 use image::GrayImage;
 use phalanx_camera::Rig;
@@ -43,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!(r#"<rect width="100%" height="100%" fill="white"/>"#);
     for (row, pose) in (0_u32..).zip([&guess, &refined.pose]) {
         for (column, (seen, drawn)) in (0_u32..).zip(observed.iter().zip(draw(pose)?)) {
-            compare(seen, &drawn, [column * width, row * height]);
+            compare(seen, &drawn, [column * width, row * height])?;
         }
     }
     println!("</svg>");
@@ -64,7 +65,7 @@ fn bent(bends: [f64; 5], theta_z: f64) -> Pose {
 }
 
 /// Two masks, one on the other: runs of pixels of one kind, row by row.
-fn compare(observed: &GrayImage, drawn: &GrayImage, at: [u32; 2]) {
+fn compare(observed: &GrayImage, drawn: &GrayImage, at: [u32; 2]) -> std::fmt::Result {
     let kind = |x, y| match [observed, drawn].map(|mask| mask.get_pixel(x, y).0[0] > 127) {
         [true, true] => Some(0),
         [true, false] => Some(1),
@@ -81,11 +82,12 @@ fn compare(observed: &GrayImage, drawn: &GrayImage, at: [u32; 2]) {
             }
             if let Some(kind) = kind(start, y) {
                 let length = x - start;
-                runs[kind] += &format!("M{} {}h{length}v1h-{length}z", at[0] + start, at[1] + y);
+                write!(runs[kind], "M{} {}h{length}v1h-{length}z", at[0] + start, at[1] + y)?;
             }
         }
     }
     for (colour, path) in COLOURS.iter().zip(runs) {
         println!(r#"<path fill="{colour}" d="{path}"/>"#);
     }
+    Ok(())
 }
