@@ -82,8 +82,7 @@ fn truncated_and_damaged_pictures() {
     let middle = damaged.len() / 2;
     damaged[middle] ^= 0x10;
     desk.refuses_file(&damaged, &[]);
-    let half_colour = include_bytes!("../../../../fuzz/corpus/picture/half_colour.png");
-    desk.refuses_file(half_colour, &["palette ends within a colour"]);
+    desk.refuses_file(&with_palette(7), &["palette ends within a colour"]);
 
     let photograph = desk.open("top.png").to_rgb8();
     photograph.save_with_format(desk.path("top.jpg"), ImageFormat::Jpeg).unwrap();
@@ -100,17 +99,27 @@ fn truncated_and_damaged_pictures() {
 
 /// A PNG that claims to be this large and has no content.
 fn claiming(width: u32, height: u32) -> Vec<u8> {
-    let chunk = |kind: &[u8; 4], content: &[u8]| {
-        let body = [kind.as_slice(), content].concat();
-        let length = (content.len() as u32).to_be_bytes();
-        let check = crc32fast::hash(&body).to_be_bytes();
-        [length.as_slice(), &body, &check].concat()
-    };
-    let header = [&width.to_be_bytes()[..], &height.to_be_bytes(), &[8, 2, 0, 0, 0]].concat();
+    png(&[&width.to_be_bytes()[..], &height.to_be_bytes(), &[8, 2, 0, 0, 0]].concat(), &[])
+}
+
+/// A PNG of one pixel, which has no content, with a palette of so many bytes.
+fn with_palette(length: usize) -> Vec<u8> {
+    png(&[0, 0, 0, 1, 0, 0, 0, 1, 8, 3, 0, 0, 0], &[(b"PLTE", &vec![9; length])])
+}
+
+/// A PNG with this header and, before its content of nothing, these chunks.
+fn png(header: &[u8], chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
     // An empty zlib stream.
     let content = [0x78, 0x9c, 0x03, 0x00, 0x00, 0x00, 0x00, 0x01];
-    let mark: &[u8] = b"\x89PNG\r\n\x1a\n";
-    [mark, &chunk(b"IHDR", &header), &chunk(b"IDAT", &content), &chunk(b"IEND", b"")].concat()
+    let mut file = b"\x89PNG\r\n\x1a\n".to_vec();
+    let around = [(b"IDAT", &content[..]), (b"IEND", &[])];
+    for (kind, content) in [(b"IHDR", header)].iter().chain(chunks).chain(&around) {
+        let body = [kind.as_slice(), content].concat();
+        file.extend((content.len() as u32).to_be_bytes());
+        file.extend(&body);
+        file.extend(crc32fast::hash(&body).to_be_bytes());
+    }
+    file
 }
 
 #[test]
