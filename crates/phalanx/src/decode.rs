@@ -10,6 +10,9 @@ use crate::{Error, Result};
 
 /// The longest side of a picture that is decoded, px.
 const MOST_PIXELS_ASIDE: u32 = 16_384;
+/// How much more memory decoding a JPEG file may take than the picture does: of a progressive one all
+/// coefficients are kept, two bytes each, of up to four channels.
+const JPEG_TIMES: u64 = 4;
 
 /// Decodes a PNG, JPEG or PNM file, the right way up: cameras that were turned say so in the file.
 /// `most_memory` bounds what decoding may take, in bytes; 2^30 is enough for any camera.
@@ -51,7 +54,8 @@ fn decode(file: &[u8], format: ImageFormat, most_memory: u64) -> ImageResult<Dyn
     let mut reader = ImageReader::with_format(Cursor::new(file), format);
     reader.limits(limits.clone());
     let mut decoder = reader.into_decoder()?;
-    limits.reserve(decoder.total_bytes())?;
+    let times = if format == ImageFormat::Jpeg { JPEG_TIMES } else { 1 };
+    limits.reserve(decoder.total_bytes().saturating_mul(times))?;
     let orientation = decoder.orientation()?;
     let mut image = DynamicImage::from_decoder(decoder)?;
     image.apply_orientation(orientation);
@@ -101,4 +105,21 @@ fn has_part_of_a_colour(png: &[u8]) -> bool {
         ahead = chunk.get(length.saturating_add(NAME_AND_CHECKSUM)..).unwrap_or_default();
     }
     false
+}
+
+#[cfg(test)]
+mod tests {
+    use image::GrayImage;
+
+    use super::*;
+
+    #[test]
+    fn what_a_jpeg_decoder_keeps_counts() {
+        let picture = GrayImage::new(100, 100);
+        let mut file = Cursor::new(Vec::new());
+        picture.write_to(&mut file, ImageFormat::Jpeg).expect("room enough");
+        let file = file.into_inner();
+        assert!(matches!(decode_picture(&file, 30_000), Err(Error::Undecodable { .. })));
+        assert_eq!(decode_picture(&file, 100_000).expect("a picture").width(), 100);
+    }
 }
