@@ -1,6 +1,7 @@
 //! Pictures from the bytes of their files.
 
 use std::io::Cursor;
+use std::panic::catch_unwind;
 
 use image::{
     DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, ImageResult, Limits,
@@ -29,7 +30,8 @@ const JPEG_TIMES: u64 = 4;
 /// # Errors
 ///
 /// [`Error::TruncatedPicture`] for a JPEG file that lacks its end; [`Error::Undecodable`] for whatever
-/// else is wrong with a file, a side above 16,384 px or too much memory.
+/// else is wrong with a file, a side above 16,384 px or too much memory. Where damage makes a decoder
+/// panic, the panic's hook is called before.
 pub fn decode_picture(file: &[u8], most_memory: u64) -> Result<DynamicImage> {
     // An image error's text tells its cause already. The JPEG decoder quotes some causes together
     // with the end of their line.
@@ -43,7 +45,11 @@ pub fn decode_picture(file: &[u8], most_memory: u64) -> Result<DynamicImage> {
         let reason = "a PNG palette ends within a colour".to_owned();
         return Err(Error::Undecodable { reason });
     }
-    decode(file, format, most_memory).map_err(undecodable)
+    // The decoders are not ours, and notice some damage only where an assertion fails.
+    match catch_unwind(|| decode(file, format, most_memory)) {
+        Ok(decoded) => decoded.map_err(undecodable),
+        Err(_) => Err(Error::Undecodable { reason: "its decoder panicked".to_owned() }),
+    }
 }
 
 fn decode(file: &[u8], format: ImageFormat, most_memory: u64) -> ImageResult<DynamicImage> {
