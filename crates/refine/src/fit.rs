@@ -23,6 +23,7 @@ struct Look {
 }
 
 /// How a fit ended.
+#[derive(Clone)]
 pub(crate) struct Outcome {
     pub(crate) state: State,
     pub(crate) energy: f64,
@@ -124,11 +125,8 @@ fn moved(problem: &Problem<'_>, state: &State, step: &Step) -> State {
         for (&dof, step) in frame.prior.dofs().iter().zip(pose) {
             moment.pose[dof] += step;
         }
-        let (margins, step) = step.split_at(moment.margins.len());
-        for (margin, step) in moment.margins.iter_mut().zip(margins) {
-            *margin += step;
-        }
-        let steps = step.chunks_exact(Correction::NUMBERS);
+        // Margins follow from where the hand is.
+        let steps = step[frame.evidence.len()..].chunks_exact(Correction::NUMBERS);
         moment.corrections.iter_mut().zip(steps).for_each(|(own, step)| own.stepped(step));
     }
     let hand = step.shared.len() - Correction::NUMBERS * state.shared.corrections.len();

@@ -30,9 +30,6 @@ pub(crate) struct Freedom {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Moment {
     pub(crate) pose: Pose,
-    /// How far each view's border lies outside the hand's, px: what segmentation adds all around or
-    /// takes away.
-    pub(crate) margins: Vec<f64>,
     /// Of cameras that stand elsewhere in every frame; none of others.
     pub(crate) corrections: Vec<Correction>,
 }
@@ -69,6 +66,42 @@ impl Measure {
         let w = s / (s + residual * residual);
         w * w * self.every as f64 / (self.noise * self.noise)
     }
+
+    /// How far a view's border lies outside the hand's, px: what segmentation adds all around or
+    /// takes away. It is where the energy of a view's distances has a minimum, looked for from
+    /// nothing, so that a pose has one energy, whatever was tried before it.
+    fn margin(&self, distances: &[f64]) -> f64 {
+        const LIMIT: f64 = 3.0;
+        const CLOSE_PX: f64 = 1e-7;
+        let (mut low, mut high) = (-LIMIT * self.margin, LIMIT * self.margin);
+        let mut margin = 0.0;
+        while high - low > CLOSE_PX {
+            let (slope, curvature) = self.margin_slope(margin, distances);
+            *(if slope > 0.0 { &mut high } else { &mut low }) = margin;
+            let newton = margin - slope / curvature;
+            let is_within = curvature > 0.0 && low < newton && newton < high;
+            let next = if is_within { newton } else { 0.5 * (low + high) };
+            if (next - margin).abs() < CLOSE_PX {
+                break;
+            }
+            margin = next;
+        }
+        margin
+    }
+
+    /// The first and the second derivative of the energy of a view's distances by its margin.
+    fn margin_slope(&self, margin: f64, distances: &[f64]) -> (f64, f64) {
+        let s = self.reach * self.reach;
+        let known = Known::new(margin, self.margin);
+        let (mut slope, mut curvature) = (known.gradient, known.hessian);
+        for distance in distances {
+            let residual = distance - margin;
+            let (weight, r) = (self.weight(residual), residual * residual);
+            slope -= weight * residual;
+            curvature += weight * (s - 3.0 * r) / (s + r);
+        }
+        (slope, curvature)
+    }
 }
 
 /// A fit of one hand to what cameras saw.
@@ -95,11 +128,7 @@ impl Problem<'_> {
     pub(crate) fn moment(&self, frame: usize, pose: &Pose) -> Moment {
         let views = self.frames[frame].evidence.len();
         let each = self.freedom.cameras.is_some_and(|doubt| doubt.moves == Moves::EveryFrame);
-        Moment {
-            pose: *pose,
-            margins: vec![0.0; views],
-            corrections: vec![Correction::NONE; if each { views } else { 0 }],
-        }
+        Moment { pose: *pose, corrections: vec![Correction::NONE; if each { views } else { 0 }] }
     }
 
     /// What all frames share before anything is known.
@@ -130,14 +159,14 @@ impl Problem<'_> {
         (known.iter().map(|known| known.energy).sum(), known)
     }
 
-    fn known_of(&self, corrections: &[Correction]) -> impl Iterator<Item = Known> {
+    fn known_of(&self, corrections: &[Correction]) -> Vec<Known> {
         let deviations = self.freedom.cameras.map_or([1.0; 2], |doubt| [doubt.turn, doubt.shift]);
         let of = move |correction: &Correction| {
             let parts = [correction.turn, correction.shift].map(|part| part.to_array());
             let known = move |k: usize| Known::new(parts[k / 3][k % 3], deviations[k / 3]);
             (0..Correction::NUMBERS).map(known)
         };
-        corrections.iter().flat_map(of).collect::<Vec<_>>().into_iter()
+        corrections.iter().flat_map(of).collect()
     }
 
     /// The energy of one frame and its normal equations.
@@ -160,27 +189,31 @@ impl Problem<'_> {
             .freedom
             .hand
             .map(|_| shared.proportions.slopes(self.given, &moment.pose, self.rest, &posed));
-        let known = moment.margins.iter().map(|&margin| Known::new(margin, measure.margin));
-        let known: Vec<Known> = known.chain(self.known_of(&moment.corrections)).collect();
         let numbers = prior.dofs().len();
+        let corrections = numbers + evidence.len();
         let of_hand = self.freedom.hand.map_or(0, |_| shared.proportions.logarithms.len());
         let of_cameras = Correction::NUMBERS * shared.corrections.len();
-        let mut system = FrameSystem::new(numbers + known.len(), of_hand + of_cameras);
+        let own = corrections + Correction::NUMBERS * moment.corrections.len();
+        let mut system = FrameSystem::new(own, of_hand + of_cameras);
         system.add_prior(prior, &moment.pose);
-        system.add_known(numbers, &known);
+        system.add_known(corrections, &self.known_of(&moment.corrections));
         let mut rows = Rows { dofs: slots(prior.dofs()), own: Row::new(), shared: Row::new() };
         for (v, (view, evidence)) in views.iter_mut().zip(*evidence).enumerate() {
             let correction = moment.corrections.get(v).or(shared.corrections.get(v));
             let place = Place::new(evidence, correction, self.rest.translation);
             view.compare(&place.seen(&posed.primitives), evidence, measure.every)?;
-            for found in &view.matches {
-                let residual = place.scale * found.passing.distance - moment.margins[v];
+            let distances = view.matches.iter().map(|found| place.scale * found.passing.distance);
+            let distances: Vec<f64> = distances.collect();
+            let margin = measure.margin(&distances);
+            system.add_known(numbers + v, &[Known::new(margin, measure.margin)]);
+            for (found, distance) in view.matches.iter().zip(distances) {
+                let residual = distance - margin;
                 let contact = place.contact(found, &posed);
                 rows.clear();
                 rows.of_pose(&contact, &motions);
                 rows.own.push((numbers + v, -1.0));
                 if !moment.corrections.is_empty() {
-                    let first = numbers + moment.margins.len() + Correction::NUMBERS * v;
+                    let first = corrections + Correction::NUMBERS * v;
                     rows.own.extend(place.row(&contact, first));
                 }
                 if let Some(slopes) = &slopes {
@@ -416,10 +449,14 @@ mod tests {
             let to_camera =
                 DAffine3::from_mat3_translation(extrinsics.rotation, extrinsics.translation);
             let solids = place.seen(&posed.primitives);
-            for found in &view.matches {
-                let passing = Hull::new(&solids[found.solid].moved(&to_camera)).pass(found.ray);
-                energy += measure.energy(place.scale * passing.distance - moment.margins[v]);
-            }
+            let distance = |found: &Match| {
+                let hull = Hull::new(&solids[found.solid].moved(&to_camera));
+                place.scale * hull.pass(found.ray).distance
+            };
+            let distances: Vec<f64> = view.matches.iter().map(distance).collect();
+            let margin = measure.margin(&distances);
+            energy += Known::new(margin, measure.margin).energy;
+            energy += distances.iter().map(|d| measure.energy(d - margin)).sum::<f64>();
         }
         energy
     }
@@ -466,7 +503,7 @@ mod tests {
                     cameras: Some(CameraDoubt { turn: 1e6, shift: 1e6, moves }),
                 },
             };
-            let measure = Measure { reach: 3.0, noise: 0.5, margin: 1e6, every: 7 };
+            let measure = Measure { reach: 3.0, noise: 0.5, margin: 1.0, every: 7 };
             let (moment, shared) = (problem.moment(0, &pose), problem.shared());
             let mut views: Vec<View> =
                 evidence.iter().map(|evidence| View::new(evidence).unwrap()).collect();
@@ -506,11 +543,6 @@ mod tests {
                 let slope = slope(&|moment, _, step| moment.pose[dof] += step);
                 let gradient = system.own_gradient()[k];
                 prop_assert!(agree(slope, gradient), "{dof}: {slope:?} is not {gradient}");
-            }
-            for v in 0..evidence.len() {
-                let slope = slope(&|moment, _, step| moment.margins[v] += step);
-                let gradient = system.own_gradient()[Dof::COUNT + v];
-                prop_assert!(agree(slope, gradient), "margin {v}: {slope:?} is not {gradient}");
             }
             let bones = shared.proportions.logarithms.len();
             // The last two are the forearm's, whose end moves with its width.

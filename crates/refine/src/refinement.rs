@@ -56,6 +56,10 @@ const GOOD: f64 = 2.0;
 /// Share of the energy that a step must win to be followed by another.
 const GAIN: f64 = 1e-3;
 
+/// Share of a start's energy that must be won for the start to be left: some directions change the
+/// energy so little that a pose would drift along them whenever it is refined again.
+const WORTH_LEAVING: f64 = 0.01;
+
 /// A level of detail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Level {
@@ -122,9 +126,10 @@ impl Refinement {
     /// cameras saw, from `start`. Those numbers that the prior does not leave open keep their
     /// values.
     ///
-    /// The energy after it is never above that of the start, at the last level and with borders as
-    /// they are. What segmentation adds to them is fitted anew each time, until a step wins less than
-    /// a thousandth: a pose that is refined again may come out some thousandths above.
+    /// The energy after it is never above that of the start, as the last level has it of the hand and
+    /// the cameras as they are given; and with these the start itself is what comes out unless
+    /// another pose wins a hundredth of that energy. Where hand and cameras are doubted, they are
+    /// found anew each time.
     ///
     /// # Errors
     /// No evidence, a parameter out of its range, a hand that no one has or that a camera cannot
@@ -149,13 +154,27 @@ impl Refinement {
             frames: vec![Frame { evidence, prior }],
             freedom: Freedom::default(),
         };
-        let best = self.descend(&problem, start, &mut views)?;
+        let start = State { moments: vec![problem.moment(0, start)], shared: problem.shared() };
+        let stay = Stop { steps: 0, gain: GAIN };
+        let given = descend(&problem, start, self.finest(), stay, &mut views)?;
+        let best = self.descend(&problem, &given, &mut views)?;
         let mut best = self.retry(&problem, best, &mut views)?;
+        if best.energy > (1.0 - WORTH_LEAVING) * given.energy {
+            best = Outcome { converged: best.converged, steps: best.steps, ..given.clone() };
+        }
         let mut doubted = false;
         if let Some(doubt) = self.doubt.filter(|doubt| best.border_px(self.noise) > doubt.beyond) {
             doubted = true;
             problem.freedom = Freedom { hand: doubt.hand, cameras: doubt.cameras };
-            best = self.loosen(&problem, &best, &mut views)?;
+            let fitted = best;
+            best = self.loosen(&problem, &fitted, &mut views)?;
+            // A good start may be one that was found with another hand.
+            if given.energy <= GOOD * fitted.energy {
+                let near = self.loosen(&problem, &given, &mut views)?;
+                let steps = best.steps + near.steps;
+                best = if near.energy < best.energy { near } else { best };
+                best.steps = steps;
+            }
         }
         let overlaps = overlaps(&problem, &best.state, self.finest(), &mut views)?.swap_remove(0);
         Ok(Refined {
@@ -182,7 +201,11 @@ impl Refinement {
     ) -> Result<Outcome> {
         let moment = problem.moment(0, &fitted.state.moments[0].pose);
         let state = State { moments: vec![moment], shared: problem.shared() };
-        let mut best = self.descend_from(1, problem, state, views)?;
+        let mut best = self.descend_from(1, problem, state.clone(), views)?;
+        if best.energy > fitted.energy {
+            // What was coarse led away.
+            best = self.descend_from(self.levels.len(), problem, state, views)?;
+        }
         best.steps += fitted.steps;
         self.retry(problem, best, views)
     }
@@ -218,22 +241,19 @@ impl Refinement {
     fn descend(
         &self,
         problem: &Problem<'_>,
-        start: &Pose,
+        given: &Outcome,
         views: &mut [Vec<View>],
     ) -> Result<Outcome> {
-        let start = State { moments: vec![problem.moment(0, start)], shared: problem.shared() };
         let coarsest = &self.levels[0];
         let stop = Stop { steps: coarsest.steps, gain: GAIN };
-        let coarse = descend(problem, start.clone(), self.measure(coarsest), stop, views)?;
+        let coarse = descend(problem, given.state.clone(), self.measure(coarsest), stop, views)?;
         let mut after = self.descend_from(1, problem, coarse.state, views)?;
         after.steps += coarse.steps;
         // What was coarse may have led away from a good start.
-        let stay = Stop { steps: 0, gain: GAIN };
-        let before = descend(problem, start, self.finest(), stay, views)?;
-        if before.energy > GOOD * after.energy {
+        if given.energy > GOOD * after.energy {
             return Ok(after);
         }
-        let mut near = self.descend_from(self.levels.len(), problem, before.state, views)?;
+        let mut near = self.descend_from(self.levels.len(), problem, given.state.clone(), views)?;
         near.steps += after.steps;
         Ok(if near.energy < after.energy { near } else { after })
     }
