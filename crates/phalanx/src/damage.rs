@@ -4,7 +4,7 @@
 use std::ops::RangeInclusive;
 
 use glam::{DAffine3, DQuat, DVec3};
-use image::{GrayImage, Luma};
+use image::GrayImage;
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{HandShape, Pose};
 
@@ -120,21 +120,18 @@ fn about(point: DVec3, direction: DVec3, angle: f64) -> DAffine3 {
     DAffine3::from_rotation_translation(rotation, point - rotation * point)
 }
 
-/// The pixels within one of each pixel, the picture going on beyond its border as it ends.
-fn neighbours(mask: &GrayImage, x: u32, y: u32) -> impl Iterator<Item = bool> + '_ {
-    let (right, bottom) = (mask.width() - 1, mask.height() - 1);
-    let rows = y.saturating_sub(1)..=(y + 1).min(bottom);
-    rows.flat_map(move |y| {
-        (x.saturating_sub(1)..=(x + 1).min(right)).map(move |x| is_hand(mask, x, y))
-    })
-}
-
-fn is_hand(mask: &GrayImage, x: u32, y: u32) -> bool {
-    mask.get_pixel(x, y).0[0] > 127
-}
-
-fn level(hand: bool) -> Luma<u8> {
-    Luma([if hand { 255 } else { 0 }])
+/// Of each pixel and those around it, the picture ending at its border, the one that `pick` picks of
+/// each two of them.
+fn around(pixels: &[u8], width: usize, pick: fn(u8, u8) -> u8) -> Vec<u8> {
+    let mut across = pixels.to_vec();
+    for (row, out) in pixels.chunks_exact(width).zip(across.chunks_exact_mut(width)) {
+        out[1..].iter_mut().zip(row).for_each(|(out, before)| *out = pick(*out, *before));
+        out.iter_mut().zip(&row[1..]).for_each(|(out, next)| *out = pick(*out, *next));
+    }
+    let mut all = across.clone();
+    all[width..].iter_mut().zip(&across).for_each(|(out, above)| *out = pick(*out, *above));
+    all.iter_mut().zip(&across[width..]).for_each(|(out, below)| *out = pick(*out, *below));
+    all
 }
 
 /// Makes a silhouette [`Border::Ragged`].
@@ -142,20 +139,66 @@ pub(crate) fn make_ragged(mask: &mut GrayImage, seed: u64) {
     const IN_BAND: f64 = 0.15;
     const ANYWHERE: f64 = 0.002;
     let mut random = ItemRandom::new(seed, 0);
-    let (width, height) = mask.dimensions();
+    let width = mask.width() as usize;
     let moved = match random.below(3) {
-        0 => {
-            GrayImage::from_fn(width, height, |x, y| level(neighbours(mask, x, y).all(|hand| hand)))
-        }
-        1 => {
-            GrayImage::from_fn(width, height, |x, y| level(neighbours(mask, x, y).any(|hand| hand)))
-        }
-        _ => mask.clone(),
+        0 => around(mask, width, u8::min),
+        1 => around(mask, width, u8::max),
+        _ => mask.to_vec(),
     };
-    *mask = GrayImage::from_fn(width, height, |x, y| {
-        let hand = is_hand(&moved, x, y);
-        let in_band = neighbours(&moved, x, y).any(|other| other != hand);
+    let (least, most) = (around(&moved, width, u8::min), around(&moved, width, u8::max));
+    for (((level, moved), least), most) in mask.iter_mut().zip(moved).zip(least).zip(most) {
+        let in_band = (least > 127) != (most > 127);
         let flips = (random.uniform() < IN_BAND && in_band) != (random.uniform() < ANYWHERE);
-        level(hand != flips)
-    });
+        *level = if (moved > 127) != flips { 255 } else { 0 };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use image::Luma;
+
+    use super::*;
+
+    /// As it is told, pixel by pixel.
+    fn slow(mask: &GrayImage, seed: u64) -> GrayImage {
+        let (width, height) = mask.dimensions();
+        let around = |mask: &GrayImage, x: u32, y: u32| -> Vec<bool> {
+            let rows = y.saturating_sub(1)..(y + 2).min(height);
+            let columns = x.saturating_sub(1)..(x + 2).min(width);
+            let places = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
+            places.map(|(x, y)| mask.get_pixel(x, y).0[0] > 127).collect()
+        };
+        let level = |hand: bool| Luma([if hand { 255 } else { 0 }]);
+        let mut random = ItemRandom::new(seed, 0);
+        let choice = random.below(3);
+        let moved = GrayImage::from_fn(width, height, |x, y| match choice {
+            0 => level(around(mask, x, y).iter().all(|&hand| hand)),
+            1 => level(around(mask, x, y).iter().any(|&hand| hand)),
+            _ => *mask.get_pixel(x, y),
+        });
+        GrayImage::from_fn(width, height, |x, y| {
+            let hand = moved.get_pixel(x, y).0[0] > 127;
+            let flips_in_band = random.uniform() < 0.15;
+            let flips_anywhere = random.uniform() < 0.002;
+            let in_band = around(&moved, x, y).contains(&!hand);
+            level(hand != ((flips_in_band && in_band) != flips_anywhere))
+        })
+    }
+
+    #[test]
+    fn borders_are_ragged_as_pixel_by_pixel() {
+        for (width, height) in [(1, 1), (1, 7), (9, 1), (2, 2), (31, 17)] {
+            for seed in 0..12 {
+                let mut random = ItemRandom::new(7, seed);
+                let patches: Vec<bool> = (0..80).map(|_| random.below(2) == 0).collect();
+                let hand = |x: u32, y: u32| patches[(x / 4 + 8 * (y / 4)) as usize];
+                let mask = GrayImage::from_fn(width, height, |x, y| {
+                    Luma([if hand(x, y) { 255 } else { 0 }])
+                });
+                let mut ragged = mask.clone();
+                make_ragged(&mut ragged, seed);
+                assert_eq!(ragged, slow(&mask, seed), "{width}×{height}, seed {seed}");
+            }
+        }
+    }
 }

@@ -73,10 +73,16 @@ pub fn downsample(image: &RgbImage, width: u32, height: u32) -> Result<RgbImage>
 /// [`downsample`] for masks: 255 where at least half of a target pixel is hand (over 127), else 0.
 pub fn downsample_mask(mask: &GrayImage, width: u32, height: u32) -> Result<GrayImage> {
     let window = CropWindow::centred(mask.dimensions(), (width, height))?;
-    let binary: Vec<u8> = mask.iter().map(|&level| if level > 127 { 255 } else { 0 }).collect();
-    let mut target = GrayImage::new(width, height);
-    area_average::<1>(&binary, mask.width(), window, (width, height), &mut target);
-    target.iter_mut().for_each(|level| *level = if *level > 127 { 255 } else { 0 });
+    let binary = |&level: &u8| if level > 127 { 255 } else { 0 };
+    let mut target = mask.clone();
+    target.iter_mut().for_each(|level| *level = binary(level));
+    // A mask that is drawn or was brought to this size before stays as it is.
+    if mask.dimensions() != (width, height) {
+        let source = target.into_raw();
+        target = GrayImage::new(width, height);
+        area_average::<1>(&source, mask.width(), window, (width, height), &mut target);
+        target.iter_mut().for_each(|level| *level = binary(level));
+    }
     Ok(target)
 }
 
