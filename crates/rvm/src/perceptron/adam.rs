@@ -26,18 +26,23 @@ impl Adam {
         self.steps
     }
 
-    /// Moves weights down their slopes at a rate.
-    pub(super) fn step(&mut self, weights: &mut [f32], slopes: &[f32], rate: f64) {
+    /// Moves weights down their slopes, which are the sums of some, at a rate.
+    pub(super) fn step(&mut self, weights: &mut [f32], slopes: &[&[f32]], rate: f64) {
         self.steps += 1;
         // Both means begin at zero, which is made up for.
         let sofar = |share: f64| 1.0 - share.powi(i32::try_from(self.steps).unwrap_or(i32::MAX));
         let (rate, root) = ((rate / sofar(MEAN)) as f32, sofar(SQUARE).sqrt().recip() as f32);
         let means = self.mean.par_chunks_mut(BLOCK).zip(self.square.par_chunks_mut(BLOCK));
-        let blocks = weights.par_chunks_mut(BLOCK).zip(slopes.par_chunks(BLOCK)).zip(means);
-        blocks.for_each(|((weights, slopes), (mean, square))| {
+        let blocks = weights.par_chunks_mut(BLOCK).zip(means).enumerate();
+        blocks.for_each(|(block, (weights, (mean, square)))| {
             let (keep, keep_square, least) = (MEAN as f32, SQUARE as f32, LEAST as f32);
-            let all = weights.iter_mut().zip(slopes).zip(mean).zip(square);
-            for (((weight, &slope), mean), square) in all {
+            let mut sums = vec![0.0; weights.len()];
+            for slopes in slopes {
+                let slopes = &slopes[block * BLOCK..];
+                sums.iter_mut().zip(slopes).for_each(|(sum, slope)| *sum += slope);
+            }
+            let all = weights.iter_mut().zip(sums).zip(mean).zip(square);
+            for (((weight, slope), mean), square) in all {
                 *mean = keep * *mean + (1.0 - keep) * slope;
                 *square = keep_square * *square + (1.0 - keep_square) * slope * slope;
                 *weight -= rate * *mean / (square.sqrt() * root + least);

@@ -9,12 +9,13 @@ mod samples;
 use faer::{Mat, MatRef};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use rayon::prelude::*;
 
 pub use network::{Network, NetworkParts};
 pub use on_components::NetworkOnComponents;
 
 use crate::perceptron::adam::Adam;
-use crate::perceptron::layers::{Layers, Pass};
+use crate::perceptron::layers::{Layers, LeftOut, Pass};
 use crate::perceptron::samples::{Samples, Scaling, check_inputs};
 use crate::{Error, Projection, Report, Result, Standardiser, Trace, check};
 
@@ -155,25 +156,31 @@ impl Perceptron {
         let batch = self.batch.min(order.len());
         let steps = self.epochs * (order.len() / batch);
         let mut adam = Adam::new(layers.weights().len());
-        let mut pass = Pass::default();
+        // So many samples as one pass takes go their way apart, however many threads there are.
+        let parts = batch.div_ceil(Pass::SAMPLES);
+        let mut passes: Vec<Pass> = std::iter::repeat_with(Pass::default).take(parts).collect();
         for epoch in 1..=self.epochs {
             shuffle(&mut order, random);
             for batch in order.chunks_exact(batch) {
-                let mut bytes = |count| {
-                    let mut bytes = vec![0; count];
-                    random.fill_bytes(&mut bytes);
-                    bytes
-                };
-                let leave_out = (self.dropout > 0.0).then_some(self.dropout);
-                pass.forward(layers, samples.inputs(batch), leave_out, &mut bytes);
-                let count = (batch.len() * samples.y.nrows()) as f32;
-                for (column, &sample) in pass.output_columns().zip(batch) {
-                    for (value, target) in column.iter_mut().zip(samples.y.col_as_slice(sample)) {
-                        *value = (*value - target).signum() / count;
+                let seeds: Vec<u64> = passes.iter().map(|_| random.next_u64()).collect();
+                let parts = passes.par_iter_mut().zip(batch.par_chunks(Pass::SAMPLES));
+                parts.zip(seeds).for_each(|((pass, part), seed)| {
+                    let random = Pcg64Mcg::seed_from_u64(seed);
+                    let left_out = LeftOut { share: self.dropout, random };
+                    let left_out = (self.dropout > 0.0).then_some(left_out);
+                    pass.forward(layers, samples.inputs(part), left_out);
+                    let count = (batch.len() * samples.y.nrows()) as f32;
+                    for (column, &sample) in pass.output_columns().zip(part) {
+                        let targets = samples.y.col_as_slice(sample);
+                        for (value, target) in column.iter_mut().zip(targets) {
+                            *value = (*value - target).signum() / count;
+                        }
                     }
-                }
-                let slopes = pass.backward(layers);
-                adam.step(layers.weights_mut(), slopes, self.rate * one_cycle(adam.steps(), steps));
+                    pass.backward(layers);
+                });
+                let slopes: Vec<&[f32]> = passes.iter().map(Pass::slopes).collect();
+                let rate = self.rate * one_cycle(adam.steps(), steps);
+                adam.step(layers.weights_mut(), &slopes, rate);
             }
             after(layers, epoch);
         }

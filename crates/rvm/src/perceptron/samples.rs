@@ -1,6 +1,7 @@
 //! What a perceptron is fitted to, and how far off it is.
 
 use faer::{ColRef, Mat, MatRef};
+use rayon::prelude::*;
 
 use crate::perceptron::layers::{Layers, Pass};
 use crate::{Error, Result, Standardiser};
@@ -92,16 +93,16 @@ impl<'a> Samples<'a> {
 
     /// The differences from the targets of all judges, one after the other.
     fn differences(&self, layers: &Layers) -> Vec<f32> {
-        let mut pass = Pass::default();
-        let mut differences = Vec::with_capacity(self.judges().len() * self.y.nrows());
-        for some in self.judges().chunks(Pass::BLOCK) {
-            pass.forward(layers, self.inputs(some), None, &mut |_| Vec::new());
-            for (column, &sample) in pass.output_columns().zip(some) {
+        let differences = |pass: &mut Pass, some: &[usize]| {
+            pass.forward(layers, self.inputs(some), None);
+            let pairs = pass.output_columns().zip(some).flat_map(|(column, &sample)| {
                 let pairs = column.iter().zip(self.y.col_as_slice(sample));
-                differences.extend(pairs.map(|(value, target)| value - target));
-            }
-        }
-        differences
+                pairs.map(|(value, target)| value - target)
+            });
+            pairs.collect::<Vec<f32>>()
+        };
+        let parts = self.judges().par_chunks(Pass::SAMPLES).map_init(Pass::default, differences);
+        parts.collect::<Vec<_>>().concat()
     }
 
     pub(super) fn mean_error(&self, layers: &Layers) -> f64 {
