@@ -73,7 +73,7 @@ pub(crate) struct Arguments {
 pub(crate) enum PresetName {
     /// 4,000 scenes.
     Fast,
-    /// 64,000 scenes.
+    /// 120,000 scenes.
     Default,
     /// 240,000 scenes.
     Best,

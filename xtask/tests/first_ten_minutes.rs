@@ -5,8 +5,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is compiled for one crate is kept for the next.
-const SHARED: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/first-ten-minutes");
+/// What was compiled for the workspace or for one crate serves the next.
+const SHARED: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/..");
 
 /// The folders of the libraries, those that others stand on first.
 const LIBRARIES: [&str; 10] = [

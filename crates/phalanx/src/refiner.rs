@@ -17,9 +17,12 @@ use crate::{
 const POSTURES: u64 = 2000;
 
 /// Where borders stay further apart than this, px, other starts are worth their time. Two views leave
-/// more open, so that what fits well may still be wrong; a hand that had to be doubted never fits as well.
-fn apart(refined: &Refined) -> f64 {
+/// more open, so that what fits well may still be wrong; a hand that had to be doubted never fits as
+/// well. Where the hand may be anywhere, a wrong posture is what most doubts come from.
+fn apart(refined: &Refined, estimate: &Estimate) -> f64 {
+    let is_anywhere = PLACED.iter().any(|dof| estimate.std[dof.index()] > 0.0);
     match (refined.doubted, refined.overlaps.len()) {
+        (true, _) if is_anywhere => 0.0,
         (true, _) => 0.35,
         (false, 2) => 0.28,
         (false, _) => 0.33,
@@ -188,7 +191,7 @@ impl Refiner {
     ) -> Result<Vec<Refined>> {
         if evidence.len() > 1 || hypotheses.is_empty() {
             let refined = self.refine(evidence, estimate)?;
-            if hypotheses.is_empty() || refined.border_px <= apart(&refined) {
+            if hypotheses.is_empty() || refined.border_px <= apart(&refined, estimate) {
                 return Ok(vec![refined]);
             }
             // Palm and arm tell where the hand is, whatever the fingers do.
