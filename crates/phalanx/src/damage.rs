@@ -120,8 +120,7 @@ fn about(point: DVec3, direction: DVec3, angle: f64) -> DAffine3 {
     DAffine3::from_rotation_translation(rotation, point - rotation * point)
 }
 
-/// Of each pixel and those around it, the picture ending at its border, the one that `pick` picks of
-/// each two of them.
+/// The least or the greatest of the 3×3 pixels around each, fewer at the picture's border.
 fn around(pixels: &[u8], width: usize, pick: fn(u8, u8) -> u8) -> Vec<u8> {
     let mut across = pixels.to_vec();
     for (row, out) in pixels.chunks_exact(width).zip(across.chunks_exact_mut(width)) {
@@ -149,7 +148,7 @@ pub(crate) fn make_ragged(mask: &mut GrayImage, seed: u64) {
     for (((level, moved), least), most) in mask.iter_mut().zip(moved).zip(least).zip(most) {
         let in_band = (least > 127) != (most > 127);
         let flips = (random.uniform() < IN_BAND && in_band) != (random.uniform() < ANYWHERE);
-        *level = if (moved > 127) != flips { 255 } else { 0 };
+        *level = if (moved > 127) == flips { 0 } else { 255 };
     }
 }
 
@@ -190,11 +189,10 @@ mod tests {
         for (width, height) in [(1, 1), (1, 7), (9, 1), (2, 2), (31, 17)] {
             for seed in 0..12 {
                 let mut random = ItemRandom::new(7, seed);
-                let patches: Vec<bool> = (0..80).map(|_| random.below(2) == 0).collect();
-                let hand = |x: u32, y: u32| patches[(x / 4 + 8 * (y / 4)) as usize];
-                let mask = GrayImage::from_fn(width, height, |x, y| {
-                    Luma([if hand(x, y) { 255 } else { 0 }])
-                });
+                let levels = [0, 100, 127, 128, 200, 255];
+                let patches: Vec<u8> = (0..80).map(|_| levels[random.below(6)]).collect();
+                let patch = |x: u32, y: u32| patches[(x / 4 + 8 * (y / 4)) as usize];
+                let mask = GrayImage::from_fn(width, height, |x, y| Luma([patch(x, y)]));
                 let mut ragged = mask.clone();
                 make_ragged(&mut ragged, seed);
                 assert_eq!(ragged, slow(&mask, seed), "{width}×{height}, seed {seed}");

@@ -22,7 +22,7 @@ const POSTURES: u64 = 2000;
 fn apart(refined: &Refined, estimate: &Estimate) -> f64 {
     let is_anywhere = PLACED.iter().any(|dof| estimate.std[dof.index()] > 0.0);
     match (refined.doubted, refined.overlaps.len()) {
-        (true, _) if is_anywhere => 0.0,
+        (true, _) if is_anywhere => 0.0, // always
         (true, _) => 0.35,
         (false, 2) => 0.28,
         (false, _) => 0.33,
@@ -178,8 +178,9 @@ impl Refiner {
         Ok(Estimate { pose: refined.pose, std, joints, ..estimate })
     }
 
-    /// Refines an estimate and, where that leaves borders apart or there is one view alone, which
-    /// several poses can explain, every hypothesis about it too; the most plausible first.
+    /// Refines an estimate and, where that leaves borders apart, a hand that may be anywhere had to be
+    /// doubted, or there is one view alone, which several poses can explain, every hypothesis about it
+    /// too; the most plausible first.
     ///
     /// # Errors
     /// As of [`refine`](Self::refine).

@@ -125,7 +125,7 @@ fn moved(problem: &Problem<'_>, state: &State, step: &Step) -> State {
         for (&dof, step) in frame.prior.dofs().iter().zip(pose) {
             moment.pose[dof] += step;
         }
-        // Margins follow from where the hand is.
+        // Steps of margins are not taken: they are found anew for every pose.
         let steps = step[frame.evidence.len()..].chunks_exact(Correction::NUMBERS);
         moment.corrections.iter_mut().zip(steps).for_each(|(own, step)| own.stepped(step));
     }

@@ -71,20 +71,20 @@ impl Measure {
     /// takes away. It is where the energy of a view's distances has a minimum, looked for from
     /// nothing, so that a pose has one energy, whatever was tried before it.
     fn margin(&self, distances: &[f64]) -> f64 {
-        const LIMIT: f64 = 3.0;
         const CLOSE_PX: f64 = 1e-7;
-        let (mut low, mut high) = (-LIMIT * self.margin, LIMIT * self.margin);
+        // Beyond all distances everything pulls back.
+        let (mut low, mut high) =
+            distances.iter().fold((0.0, 0.0), |(low, high), &d| (d.min(low), d.max(high)));
         let mut margin = 0.0;
         while high - low > CLOSE_PX {
             let (slope, curvature) = self.margin_slope(margin, distances);
-            *(if slope > 0.0 { &mut high } else { &mut low }) = margin;
             let newton = margin - slope / curvature;
-            let is_within = curvature > 0.0 && low < newton && newton < high;
-            let next = if is_within { newton } else { 0.5 * (low + high) };
-            if (next - margin).abs() < CLOSE_PX {
+            if curvature > 0.0 && (newton - margin).abs() < CLOSE_PX {
                 break;
             }
-            margin = next;
+            *(if slope > 0.0 { &mut high } else { &mut low }) = margin;
+            let is_within = curvature > 0.0 && low < newton && newton < high;
+            margin = if is_within { newton } else { 0.5 * (low + high) };
         }
         margin
     }
@@ -429,6 +429,20 @@ mod tests {
         let solids = hand.pose(pose, rest).primitives;
         let mask = Renderer::new(camera).unwrap().silhouette(&solids).unwrap();
         Evidence::new(camera, &mask).unwrap()
+    }
+
+    #[test]
+    fn a_margin_is_where_the_energy_is_least() {
+        let measure = Measure { reach: 1.0, noise: 0.5, margin: 1.0, every: 1 };
+        assert_eq!(measure.margin(&[]), 0.0);
+        assert_eq!(measure.margin(&[0.0; 9]), 0.0);
+        for (offset, noise) in [(0.3, 0.4), (-0.8, 0.1), (6.0, 0.3), (-20.0, 3.0)] {
+            let noise = |k: u32| noise * (f64::from(k) * 2.4).sin();
+            let distances: Vec<f64> = (0..300).map(|k| offset + noise(k)).collect();
+            let margin = measure.margin(&distances);
+            let (slope, curvature) = measure.margin_slope(margin, &distances);
+            assert!(slope.abs() < 1e-3 && curvature > 0.0, "{offset}: {margin}, {slope}");
+        }
     }
 
     /// The energy of the border when the same rays are held against the same solids.

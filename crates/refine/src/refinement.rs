@@ -57,8 +57,9 @@ const GOOD: f64 = 2.0;
 const GAIN: f64 = 1e-3;
 
 /// Share of a start's energy that must be won for the start to be left: some directions change the
-/// energy so little that a pose would drift along them whenever it is refined again.
-const WORTH_LEAVING: f64 = 0.01;
+/// energy so little that a pose would drift along them whenever it is refined again. Of what well-fitted
+/// poses come to it is about a unit of the log-likelihood.
+const WORTH_LEAVING: f64 = 0.005;
 
 /// A level of detail.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,7 +129,7 @@ impl Refinement {
     ///
     /// The energy after it is never above that of the start, as the last level has it of the hand and
     /// the cameras as they are given; and with these the start itself is what comes out unless
-    /// another pose wins a hundredth of that energy. Where hand and cameras are doubted, they are
+    /// another pose wins half a hundredth of that energy. Where hand and cameras are doubted, they are
     /// found anew each time.
     ///
     /// # Errors
@@ -166,15 +167,7 @@ impl Refinement {
         if let Some(doubt) = self.doubt.filter(|doubt| best.border_px(self.noise) > doubt.beyond) {
             doubted = true;
             problem.freedom = Freedom { hand: doubt.hand, cameras: doubt.cameras };
-            let fitted = best;
-            best = self.loosen(&problem, &fitted, &mut views)?;
-            // A good start may be one that was found with another hand.
-            if given.energy <= GOOD * fitted.energy {
-                let near = self.loosen(&problem, &given, &mut views)?;
-                let steps = best.steps + near.steps;
-                best = if near.energy < best.energy { near } else { best };
-                best.steps = steps;
-            }
+            best = self.doubt(&problem, &given, &best, &mut views)?;
         }
         let overlaps = overlaps(&problem, &best.state, self.finest(), &mut views)?.swap_remove(0);
         Ok(Refined {
@@ -192,6 +185,25 @@ impl Refinement {
         })
     }
 
+    /// Fits what is doubted too: from a fit of the pose alone, and from a start that is nearly as good,
+    /// since it may have been found with another hand.
+    fn doubt(
+        &self,
+        problem: &Problem<'_>,
+        given: &Outcome,
+        fitted: &Outcome,
+        views: &mut [Vec<View>],
+    ) -> Result<Outcome> {
+        let best = self.loosen(problem, fitted, views)?;
+        if given.energy <= fitted.energy || given.energy > GOOD * fitted.energy {
+            return Ok(best);
+        }
+        let near = self.loosen(problem, given, views)?;
+        let steps = best.steps + near.steps;
+        let best = if near.energy < best.energy { near } else { best };
+        Ok(Outcome { steps, ..best })
+    }
+
     /// Fits what is doubted too, from a fit of the pose alone.
     fn loosen(
         &self,
@@ -204,7 +216,9 @@ impl Refinement {
         let mut best = self.descend_from(1, problem, state.clone(), views)?;
         if best.energy > fitted.energy {
             // What was coarse led away.
+            let tried = best.steps;
             best = self.descend_from(self.levels.len(), problem, state, views)?;
+            best.steps += tried;
         }
         best.steps += fitted.steps;
         self.retry(problem, best, views)

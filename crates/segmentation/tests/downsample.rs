@@ -89,6 +89,7 @@ fn known_windows() {
 fn a_mask_pixel_is_hand_from_half_coverage_on() {
     let mask = GrayImage::from_raw(4, 2, vec![200, 0, 128, 0, 127, 255, 0, 0]).unwrap();
     assert_eq!(downsample_mask(&mask, 2, 1).unwrap().into_raw(), [255, 0]);
+    assert_eq!(downsample_mask(&mask, 4, 2).unwrap().into_raw(), [255, 0, 255, 0, 0, 255, 0, 0]);
     let all = GrayImage::from_pixel(7, 5, Luma([255]));
     assert!(downsample_mask(&all, 3, 2).unwrap().iter().all(|&level| level == 255));
 }

@@ -11,8 +11,11 @@ use crate::files;
 /// The cargo that runs this command, in a folder.
 pub(super) fn cargo(folder: &Path) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    // What is compiled for one folder serves the others.
+    // What is compiled for one folder serves the others, if it is compiled as the workspace says.
     cargo.current_dir(folder).env("CARGO_TARGET_DIR", target());
+    cargo
+        .env("CARGO_PROFILE_DEV_OPT_LEVEL", "2")
+        .env("CARGO_PROFILE_DEV_DEBUG", "line-tables-only");
     cargo
 }
 

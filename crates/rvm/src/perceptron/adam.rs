@@ -26,7 +26,7 @@ impl Adam {
         self.steps
     }
 
-    /// Moves weights down their slopes, which are the sums of some, at a rate.
+    /// Moves weights down their slopes, given in parts that are added in order, at a rate.
     pub(super) fn step(&mut self, weights: &mut [f32], slopes: &[&[f32]], rate: f64) {
         self.steps += 1;
         // Both means begin at zero, which is made up for.
@@ -48,5 +48,27 @@ impl Adam {
                 *weight -= rate * *mean / (square.sqrt() * root + least);
             }
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slopes_in_parts_are_added() {
+        let count = BLOCK + 100;
+        let parts: Vec<Vec<f32>> =
+            (1..4).map(|k| (0..count).map(|i| ((i * k) % 17) as f32 - 8.0).collect()).collect();
+        let sum: Vec<f32> = (0..count).map(|i| parts.iter().map(|part| part[i]).sum()).collect();
+        let stepped = |slopes: &[&[f32]]| {
+            let mut weights = vec![1.0; count];
+            let mut adam = Adam::new(count);
+            adam.step(&mut weights, slopes, 0.1);
+            adam.step(&mut weights, slopes, 0.1);
+            weights
+        };
+        let parts: Vec<&[f32]> = parts.iter().map(Vec::as_slice).collect();
+        assert_eq!(stepped(&parts), stepped(&[&sum]));
     }
 }

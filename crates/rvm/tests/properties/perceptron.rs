@@ -114,8 +114,10 @@ fn a_bent_surface_is_learnt() {
 
 #[test]
 fn any_number_of_threads_and_dropout_give_the_same_bits() {
-    let (x, y) = bent(5, 500);
-    let fitter = Perceptron { hidden: vec![80, 80], dropout: 0.3, epochs: 3, ..small() };
+    // Parts of a batch, of the weights and of the judges, none of them whole.
+    let (x, y) = bent(5, 5000);
+    let fitter =
+        Perceptron { hidden: vec![150, 150], batch: 300, dropout: 0.3, epochs: 2, ..small() };
     let of_threads = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| fit(&fitter, x.as_ref(), y.as_ref()))
