@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
          # Where the hand is and how it is turned\n\n\
          Wrists anywhere in the rig's volume, arms leaning by up to 30° in θ_X and in θ_Y, θ_Z from 0° to 90°: every\n\
          {EVERY}th of the test `placed`, {looked_at} hands, those found that every camera shows. The default preset, learnt\n\
-         through windows. Mean, median and 95th percentile of what is wrong.\n\n{table}\n",
+         through windows from {samples} scenes. Mean, median and 95th percentile of what is wrong.\n\n{table}\n",
     );
     files::write_whole(&files::in_repository(PAGE), page.as_bytes())?;
     files::print(&page)

@@ -14,18 +14,20 @@ const REFINED: &str = "<!-- refined: written by cargo xtask headline -->\n";
 const PAPER: &str = "<!-- paper: written by cargo xtask headline -->\n";
 const END: &str = "<!-- end -->\n";
 
+/// A table whose files are not named stays as it is.
 #[derive(Args)]
+#[group(required = true, multiple = true)]
 pub(crate) struct Arguments {
     /// What `cargo xtask eval-table1 --json` wrote.
-    #[arg(long, value_name = "FILE", default_value = "target/table1.json")]
-    table1: PathBuf,
+    #[arg(long, value_name = "FILE", requires = "held_out")]
+    table1: Option<PathBuf>,
     /// What `cargo xtask eval-held-out --json` wrote.
-    #[arg(long, value_name = "FILE", default_value = "target/held-out.json")]
-    held_out: PathBuf,
+    #[arg(long, value_name = "FILE", requires = "table1")]
+    held_out: Option<PathBuf>,
     /// What `cargo xtask eval-held-out --methods preset,refined,refined_own_hand --tests unseen,all
     /// --json` wrote.
-    #[arg(long, value_name = "FILE", default_value = "target/refined.json")]
-    refined: PathBuf,
+    #[arg(long, value_name = "FILE")]
+    refined: Option<PathBuf>,
 }
 
 /// The rows of either file, as far as they are of interest here.
@@ -75,15 +77,23 @@ const LINES: [Line; 4] = [
 ];
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let (table1, held_out) = (read(&arguments.table1)?, read(&arguments.held_out)?);
-    let rows: Vec<Row> =
-        table1.rows.into_iter().filter(|row| row.counts == "paper").chain(held_out.rows).collect();
-    let (refined, paper) = (refined(&read(&arguments.refined)?.rows)?, paper(&rows)?);
+    let mut tables = Vec::new();
+    if let Some(path) = &arguments.refined {
+        tables.push((REFINED, refined(&read(path)?.rows)?));
+    }
+    if let (Some(table1), Some(held_out)) = (&arguments.table1, &arguments.held_out) {
+        let of_paper = read(table1)?.rows.into_iter().filter(|row| row.counts == "paper");
+        let rows: Vec<Row> = of_paper.chain(read(held_out)?.rows).collect();
+        tables.push((PAPER, paper(&rows)?));
+    }
     let path = files::in_repository("README.md");
-    let readme = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-    let readme = with_table(&with_table(&readme, REFINED, &refined)?, PAPER, &paper)?;
+    let mut readme = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+    for (place, table) in &tables {
+        readme = with_table(&readme, place, table)?;
+    }
     files::write_whole(&path, readme.as_bytes())?;
-    files::print(&format!("{refined}\n{paper}"))
+    let tables: Vec<String> = tables.into_iter().map(|(_, table)| table).collect();
+    files::print(&tables.join("\n"))
 }
 
 /// The page with a table in its place.
