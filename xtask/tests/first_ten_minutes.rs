@@ -5,9 +5,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What was compiled for the workspace or for one crate serves the next, if it is compiled as the
-/// workspace says.
-const SHARED: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/..");
+/// What is compiled for one crate is kept for the next.
+const SHARED: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/first-ten-minutes");
 
 /// The folders of the libraries, those that others stand on first.
 const LIBRARIES: [&str; 10] = [
@@ -111,8 +110,6 @@ fn try_out(library: &str, readme: &str, home: &Path) {
         let verb = if example.only_compiles { "build" } else { "run" };
         let mut cargo = Command::new(env!("CARGO"));
         cargo.current_dir(home).env("CARGO_TARGET_DIR", SHARED);
-        cargo.env("CARGO_PROFILE_DEV_OPT_LEVEL", "2");
-        cargo.env("CARGO_PROFILE_DEV_DEBUG", "line-tables-only");
         let output = cargo.args([verb, "--offline", "--quiet", "--bin", &name]).output();
         let output = output.expect("cargo starts");
         let said = String::from_utf8_lossy(&output.stderr);
@@ -121,7 +118,7 @@ fn try_out(library: &str, readme: &str, home: &Path) {
 }
 
 #[test]
-#[ignore = "compiles every crate again, which takes minutes; .ci/run asks for it"]
+#[ignore = "compiles every crate afresh, which takes minutes; .ci/run asks for it"]
 fn every_readme_runs_as_printed() {
     let scratch = std::env::temp_dir().join(format!("phalanx-stranger-{}", std::process::id()));
     for folder in LIBRARIES {
