@@ -16,7 +16,7 @@ pub enum Preset {
     /// A few minutes. It learns from thirty times as many scenes as `Fast`, by a network.
     #[default]
     Balanced,
-    /// A quarter of an hour: sixty times as many, and a wider network.
+    /// Ten minutes or so: sixty times as many, and a wider network.
     Best,
 }
 

@@ -168,7 +168,7 @@ fn bend(values: &mut [f32], steepness: &mut Vec<f32>) {
 }
 
 /// eˣ, a unit or two of the last place off; x is held within −87 and 88, where the result is a normal
-/// number. Loops around the system's own cannot be vectorised, which made it a sixth of a training.
+/// number. Loops around the system's own cannot be vectorised.
 fn exp(x: f32) -> f32 {
     use std::f32::consts::LOG2_E;
     /// Added to a number it puts the nearest whole number into the lowest bits.
