@@ -162,22 +162,28 @@ fn is_known(known: &GrayImage, crack: DVec2) -> bool {
 /// The middles of the pixel edges between hand and background, px, row by row.
 pub(crate) fn find_cracks(mask: &GrayImage, cracks: &mut Vec<DVec2>) {
     cracks.clear();
-    let width = mask.width() as usize;
     let rows: &[u8] = mask.as_raw();
     let mut above: &[u8] = &[];
-    for (y, row) in rows.chunks_exact(width).enumerate() {
+    for (y, row) in rows.chunks_exact(mask.width() as usize).enumerate() {
         let y = y as f64;
-        for (x, pair) in row.windows(2).enumerate() {
-            if (pair[0] > 127) != (pair[1] > 127) {
-                cracks.push(DVec2::new(x as f64 + 1.0, y + 0.5));
-            }
-        }
-        for (x, (&a, &b)) in above.iter().zip(row).enumerate() {
-            if (a > 127) != (b > 127) {
-                cracks.push(DVec2::new(x as f64 + 0.5, y));
-            }
-        }
+        let (to_the_left, own) = (&row[..row.len() - 1], &row[1..]);
+        changes(to_the_left, own, |x| cracks.push(DVec2::new(x as f64 + 1.0, y + 0.5)));
+        changes(above, row, |x| cracks.push(DVec2::new(x as f64 + 0.5, y)));
         above = row;
+    }
+}
+
+/// Calls for every place at which one row of pixels is hand and the other is not.
+fn changes(one: &[u8], other: &[u8], mut at: impl FnMut(usize)) {
+    // Nearly all of a picture is alike: pieces that are need not be looked at pixel by pixel.
+    const PIECE: usize = 16;
+    for (k, (one, other)) in one.chunks(PIECE).zip(other.chunks(PIECE)).enumerate() {
+        if one != other {
+            let pairs = one.iter().zip(other).enumerate();
+            pairs
+                .filter(|(_, (a, b))| (**a > 127) != (**b > 127))
+                .for_each(|(x, _)| at(PIECE * k + x));
+        }
     }
 }
 
@@ -202,54 +208,127 @@ pub(crate) fn outwards(mask: &GrayImage, crack: DVec2) -> DVec2 {
 /// The nearest crack of every pixel, by two sweeps that hand on neighbours' (Danielsson 1980): in
 /// rare places the second nearest.
 fn nearest_cracks(cracks: &[DVec2], (width, height): (u32, u32)) -> Vec<u32> {
-    const NONE: u32 = u32::MAX;
     let (w, h) = (width as usize, height as usize);
-    let mut nearest = vec![NONE; w * h];
-    let far = |pixel: usize, crack: u32| {
-        let centre = DVec2::new((pixel % w) as f64 + 0.5, (pixel / w) as f64 + 0.5);
-        cracks.get(crack as usize).map_or(f64::INFINITY, |at| at.distance_squared(centre))
+    let mut nearest = Nearest {
+        cracks,
+        of_pixels: vec![u32::MAX; w * h],
+        squared: vec![f64::INFINITY; w * h],
+        width: w,
     };
     for (index, crack) in cracks.iter().enumerate() {
         for [x, y] in beside(*crack) {
-            let pixel = y as usize * w + x as usize;
-            if far(pixel, index as u32) < far(pixel, nearest[pixel]) {
-                nearest[pixel] = index as u32;
-            }
+            nearest.offer(x as usize, y as usize, index as u32);
         }
     }
-    let mut take = |pixel: usize, from: usize| {
-        let candidate = nearest[from];
-        if far(pixel, candidate) < far(pixel, nearest[pixel]) {
-            nearest[pixel] = candidate;
-        }
-    };
     for y in 0..h {
         for x in 0..w {
-            let pixel = y * w + x;
             if y > 0 {
-                let beside = [x.checked_sub(1), Some(x), (x + 1 < w).then_some(x + 1)];
-                for from in beside.into_iter().flatten() {
-                    take(pixel, pixel - w - x + from);
-                }
+                nearest.take_row(x, y, y - 1);
             }
             if x > 0 {
-                take(pixel, pixel - 1);
+                nearest.take(x, y, x - 1, y);
             }
         }
-        (0..w - 1).rev().for_each(|x| take(y * w + x, y * w + x + 1));
+        (0..w - 1).rev().for_each(|x| nearest.take(x, y, x + 1, y));
     }
     for y in (0..h - 1).rev() {
         for x in (0..w).rev() {
-            let pixel = y * w + x;
-            let beside = [x.checked_sub(1), Some(x), (x + 1 < w).then_some(x + 1)];
-            for from in beside.into_iter().flatten() {
-                take(pixel, pixel + w - x + from);
-            }
+            nearest.take_row(x, y, y + 1);
             if x + 1 < w {
-                take(pixel, pixel + 1);
+                nearest.take(x, y, x + 1, y);
             }
         }
-        (1..w).for_each(|x| take(y * w + x, y * w + x - 1));
+        (1..w).for_each(|x| nearest.take(x, y, x - 1, y));
     }
-    nearest
+    nearest.of_pixels
+}
+
+/// The nearest crack of every pixel so far.
+struct Nearest<'a> {
+    cracks: &'a [DVec2],
+    of_pixels: Vec<u32>,
+    /// How far it is from the pixel's middle, squared.
+    squared: Vec<f64>,
+    width: usize,
+}
+
+impl Nearest<'_> {
+    /// A crack that may be nearer to a pixel.
+    fn offer(&mut self, x: usize, y: usize, crack: u32) {
+        let Some(at) = self.cracks.get(crack as usize) else { return };
+        let pixel = y * self.width + x;
+        let squared = at.distance_squared(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        if squared < self.squared[pixel] {
+            (self.of_pixels[pixel], self.squared[pixel]) = (crack, squared);
+        }
+    }
+
+    /// That of another pixel.
+    fn take(&mut self, x: usize, y: usize, from_x: usize, from_y: usize) {
+        let crack = self.of_pixels[from_y * self.width + from_x];
+        if crack != self.of_pixels[y * self.width + x] {
+            self.offer(x, y, crack);
+        }
+    }
+
+    /// Those of the three nearest pixels of another row.
+    fn take_row(&mut self, x: usize, y: usize, from_y: usize) {
+        for from_x in x.saturating_sub(1)..self.width.min(x + 2) {
+            self.take(x, y, from_x, from_y);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Masks of few and of many changes.
+    fn masks() -> impl Strategy<Value = GrayImage> {
+        (1_u32..50, 1_u32..20, 0.0..1.0_f64).prop_flat_map(|(width, height, share)| {
+            let pixel = prop::bool::weighted(share).prop_map(|hand| if hand { 200 } else { 100 });
+            prop::collection::vec(pixel, (width * height) as usize)
+                .prop_map(move |pixels| GrayImage::from_raw(width, height, pixels).unwrap())
+        })
+    }
+
+    /// By looking at every pair of pixels.
+    fn slow_cracks(mask: &GrayImage) -> Vec<DVec2> {
+        let is_hand = |x: u32, y: u32| mask.get_pixel(x, y).0[0] > 127;
+        let mut cracks = Vec::new();
+        for y in 0..mask.height() {
+            let across = (1..mask.width()).filter(|&x| is_hand(x - 1, y) != is_hand(x, y));
+            cracks.extend(across.map(|x| DVec2::new(f64::from(x), f64::from(y) + 0.5)));
+            let down = (0..mask.width()).filter(|&x| y > 0 && is_hand(x, y - 1) != is_hand(x, y));
+            cracks.extend(down.map(|x| DVec2::new(f64::from(x) + 0.5, f64::from(y))));
+        }
+        cracks
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn cracks_are_where_neighbours_differ(mask in masks()) {
+            let mut cracks = Vec::new();
+            find_cracks(&mask, &mut cracks);
+            prop_assert_eq!(cracks, slow_cracks(&mask));
+        }
+
+        /// The sweeps may miss the nearest by a little.
+        #[test]
+        fn the_nearest_crack_is_nearest(mask in masks()) {
+            let cracks = slow_cracks(&mask);
+            prop_assume!(!cracks.is_empty());
+            let nearest = nearest_cracks(&cracks, mask.dimensions());
+            for (x, y, _) in mask.enumerate_pixels() {
+                let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+                let found = cracks[nearest[(y * mask.width() + x) as usize] as usize];
+                let least = cracks.iter().map(|crack| crack.distance(middle)).fold(f64::MAX, f64::min);
+                prop_assert!(found.distance(middle) <= least + 0.5, "{found} from {middle}");
+            }
+        }
+    }
 }

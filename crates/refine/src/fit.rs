@@ -33,6 +33,13 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
+    /// The better of two, with the steps of both.
+    pub(crate) fn or(self, other: Self) -> Self {
+        let steps = self.steps + other.steps;
+        let better = if other.energy < self.energy { other } else { self };
+        Self { steps, ..better }
+    }
+
     /// Root of the mean robust squared distance of the borders, px, given their noise.
     pub(crate) fn border_px(&self, noise: f64) -> f64 {
         let energy: f64 = self.frames.iter().map(|frame| frame.border.energy).sum();
@@ -48,6 +55,8 @@ pub(crate) struct Stop {
     pub(crate) steps: usize,
     /// Share of the energy that a step must win.
     pub(crate) gain: f64,
+    /// The energy below which the first step must promise to lead.
+    pub(crate) hope: f64,
 }
 
 /// Descends from a state until steps win no more.
@@ -67,6 +76,9 @@ pub(crate) fn descend(
             damping = f64::max(10.0 * damping, 1e-3);
             continue;
         };
+        if steps == 1 && look.energy - step.promise > stop.hope {
+            break;
+        }
         let candidate = moved(problem, &state, &step);
         match look_at(problem, &candidate, measure, views) {
             Ok(next) if next.energy < look.energy => {

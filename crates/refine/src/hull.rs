@@ -13,6 +13,8 @@ pub(crate) struct Hull {
     centers: [DVec3; 3],
     radii: [f64; 3],
     balls: usize,
+    /// From where the balls are held to the solid, if it is squashed.
+    squash: Option<DMat3>,
     /// What undoes the squash of a squashed solid; rays are taken through it before they are
     /// compared with the balls.
     unsquash: Option<DMat3>,
@@ -56,15 +58,16 @@ pub(crate) struct Bound {
 
 impl Bound {
     /// Whether the ray through a place of the plane z = 1 surely passes at least so far off, mm.
+    #[inline]
     pub(crate) fn is_beyond(&self, place: DVec2, distance: f64) -> bool {
         let apart = self.reach + distance.max(0.0) * self.per_mm;
-        let (squared, of_disc) = (apart * apart, apart + self.around);
-        if self.corners == 0 {
-            return false;
-        }
-        if place.distance_squared(self.middle) >= of_disc * of_disc {
-            return true;
-        }
+        let of_disc = apart + self.around;
+        place.distance_squared(self.middle) >= of_disc * of_disc
+            || self.is_off_corners(place, apart * apart)
+    }
+
+    /// Whether a place is at least so far, squared, from the point, line or triangle.
+    fn is_off_corners(&self, place: DVec2, squared: f64) -> bool {
         let [a, b, c] = self.seen;
         match self.corners {
             1 => place.distance_squared(a) >= squared,
@@ -94,13 +97,14 @@ impl Hull {
     pub(crate) fn new(solid: &Primitive) -> Self {
         let balls = solid.balls();
         let at = |k: usize| balls[k.min(balls.len() - 1)];
-        let unsquash = matches!(solid, Primitive::GeneralisedCylinder { .. })
-            .then(|| solid.squash().inverse());
+        let squash = matches!(solid, Primitive::GeneralisedCylinder { .. }).then(|| solid.squash());
+        let unsquash = squash.map(|squash| squash.inverse());
         let shift = unsquash.map_or(DVec3::ZERO, |m| m * at(0).center - at(0).center);
         Self {
             centers: [0, 1, 2].map(|k| at(k).center + shift),
             radii: [0, 1, 2].map(|k| at(k).radius),
             balls: balls.len(),
+            squash,
             unsquash,
         }
     }
@@ -111,14 +115,16 @@ impl Hull {
         const WIDER: f64 = 1.1;
         // A ray off the axis passes nearer than the plane says, by no more than this.
         const NEARER: f64 = 0.8;
-        let seen = self.centers.map(|center| center.truncate() / center.z);
-        let reach = [0, 1, 2].map(|k| WIDER * self.radii[k] / self.centers[k].z);
-        let depth = self.centers[0].z.min(self.centers[1].z).min(self.centers[2].z);
+        // Undoing a squash only takes things apart: what passes the balls where the solid has them
+        // passes the solid no nearer than that.
+        let centers = self.centers.map(|center| self.squash.map_or(center, |m| m * center));
+        let seen = centers.map(|center| center.truncate() / center.z);
+        let reach = [0, 1, 2].map(|k| WIDER * self.radii[k] / centers[k].z);
+        let depth = centers[0].z.min(centers[1].z).min(centers[2].z);
         let middle = (seen[0] + seen[1] + seen[2]) / 3.0;
         let around = seen.map(|corner| corner.distance(middle));
         Bound {
-            // Undoing the squash moves outlines: such a solid, the forearm, may be anywhere.
-            corners: if self.unsquash.is_some() { 0 } else { self.balls },
+            corners: self.balls,
             seen,
             middle,
             around: around[0].max(around[1]).max(around[2]),
@@ -129,15 +135,20 @@ impl Hull {
 
     /// Where the ray of unit direction `ray` from the camera's centre passes.
     pub(crate) fn pass(&self, ray: DVec3) -> Passing {
-        let Some(unsquash) = self.unsquash else { return self.pass_round(ray) };
-        let stretched = unsquash * ray;
-        let length = stretched.length();
-        let passing = self.pass_round(stretched / length);
-        let foot = self.center(&passing.weights).dot(stretched) / (length * length);
-        Passing { normal: unsquash * passing.normal, point: Some(ray * foot), ..passing }
+        self.pass_within(f64::INFINITY, ray).expect("any distance is within")
     }
 
-    fn pass_round(&self, ray: DVec3) -> Passing {
+    /// The same; nothing where that is no nearer than a distance, mm.
+    pub(crate) fn pass_within(&self, distance: f64, ray: DVec3) -> Option<Passing> {
+        let Some(unsquash) = self.unsquash else { return self.pass_round(distance, ray) };
+        let stretched = unsquash * ray;
+        let length = stretched.length();
+        let passing = self.pass_round(distance, stretched / length)?;
+        let foot = self.center(&passing.weights).dot(stretched) / (length * length);
+        Some(Passing { normal: unsquash * passing.normal, point: Some(ray * foot), ..passing })
+    }
+
+    fn pass_round(&self, within: f64, ray: DVec3) -> Option<Passing> {
         let across = self.centers.map(|center| center - ray * center.dot(ray));
         let nearest = |distance, weights| Nearest { distance, weights, through: false };
         let Nearest { distance, weights, through } = match self.balls {
@@ -148,9 +159,12 @@ impl Hull {
             }
             _ => self.triangle(&across, ray),
         };
+        if distance >= within {
+            return None;
+        }
         let offset = across[0] * weights[0] + across[1] * weights[1] + across[2] * weights[2];
         let normal = if through { DVec3::ZERO } else { offset.normalize_or_zero() };
-        Passing { distance, weights, normal, point: None }
+        Some(Passing { distance, weights, normal, point: None })
     }
 
     /// ρ of the hull of two balls and the second one's weight.
@@ -252,6 +266,22 @@ mod tests {
             prop_assert!(alike || (fast < -1.9 && slow < fast), "{fast} is not {slow}");
             for beyond in [1e-6, 1.0, 10.0] {
                 prop_assert!(!hull.bound().is_beyond(place, fast + beyond));
+            }
+        }
+
+        #[test]
+        fn no_ray_passes_a_squashed_solid_nearer_than_its_bound(
+            ends in prop::array::uniform2(ball()),
+            thin in prop::array::uniform3(-1.0..1.0_f64),
+            flatness in 0.3..1.0_f64,
+            at in prop::array::uniform2(-0.2..0.2_f64),
+        ) {
+            let thin_axis = DVec3::from_array(thin).try_normalize().unwrap_or(DVec3::X);
+            let hull = Hull::new(&Primitive::GeneralisedCylinder { ends, thin_axis, flatness });
+            let place = DVec2::from_array(at);
+            let passed = hull.pass(place.extend(1.0).normalize()).distance;
+            for beyond in [1e-6, 1.0, 10.0] {
+                prop_assert!(!hull.bound().is_beyond(place, passed + beyond));
             }
         }
     }

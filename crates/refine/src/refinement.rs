@@ -53,6 +53,9 @@ enum Tries {
 /// A start of at most so many times the energy that was reached from it is good in itself.
 const GOOD: f64 = 2.0;
 
+/// Any energy is below it.
+pub(crate) const NO_MATTER: f64 = f64::INFINITY;
+
 /// Share of the energy that a step must win to be followed by another.
 const GAIN: f64 = 1e-3;
 
@@ -60,6 +63,10 @@ const GAIN: f64 = 1e-3;
 /// energy so little that a pose would drift along them whenever it is refined again. Of what well-fitted
 /// poses come to it is about a unit of the log-likelihood.
 const WORTH_LEAVING: f64 = 0.005;
+
+/// Share of a fit's energy that a search of postures must win, by its own count of pixels, for the fit
+/// to be repeated from what it found.
+const WORTH_FITTING: f64 = 0.02;
 
 /// A level of detail.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,6 +100,12 @@ pub struct Refined {
     pub converged: bool,
     /// How many steps were tried.
     pub steps: usize,
+}
+
+impl Level {
+    fn stop(&self) -> Stop {
+        Stop { steps: self.steps, gain: GAIN, hope: NO_MATTER }
+    }
 }
 
 impl Default for Refinement {
@@ -156,7 +169,7 @@ impl Refinement {
             freedom: Freedom::default(),
         };
         let start = State { moments: vec![problem.moment(0, start)], shared: problem.shared() };
-        let stay = Stop { steps: 0, gain: GAIN };
+        let stay = Stop { steps: 0, ..self.levels[0].stop() };
         let given = descend(&problem, start, self.finest(), stay, &mut views)?;
         let best = self.descend(&problem, &given, &mut views)?;
         let mut best = self.retry(&problem, best, &mut views)?;
@@ -194,14 +207,12 @@ impl Refinement {
         fitted: &Outcome,
         views: &mut [Vec<View>],
     ) -> Result<Outcome> {
-        let best = self.loosen(problem, fitted, views)?;
-        if given.energy <= fitted.energy || given.energy > GOOD * fitted.energy {
-            return Ok(best);
+        let mut best = self.loosen(problem, fitted, views)?;
+        if fitted.energy < given.energy && given.energy <= GOOD * fitted.energy {
+            let near = self.loosen(problem, given, views)?;
+            best = best.or(near);
         }
-        let near = self.loosen(problem, given, views)?;
-        let steps = best.steps + near.steps;
-        let best = if near.energy < best.energy { near } else { best };
-        Ok(Outcome { steps, ..best })
+        self.retry(problem, best, views)
     }
 
     /// Fits what is doubted too, from a fit of the pose alone.
@@ -213,15 +224,15 @@ impl Refinement {
     ) -> Result<Outcome> {
         let moment = problem.moment(0, &fitted.state.moments[0].pose);
         let state = State { moments: vec![moment], shared: problem.shared() };
-        let mut best = self.descend_from(1, problem, state.clone(), views)?;
+        let mut best = self.descend_from(1, problem, state.clone(), NO_MATTER, views)?;
         if best.energy > fitted.energy {
             // What was coarse led away.
             let tried = best.steps;
-            best = self.descend_from(self.levels.len(), problem, state, views)?;
+            best = self.descend_from(self.levels.len(), problem, state, NO_MATTER, views)?;
             best.steps += tried;
         }
         best.steps += fitted.steps;
-        self.retry(problem, best, views)
+        Ok(best)
     }
 
     /// Tries digits in other postures, first each alone and then neighbours together, until that
@@ -238,11 +249,12 @@ impl Refinement {
                 if best.border_px(self.noise) <= self.content {
                     return Ok(best);
                 }
-                let state = searched(problem, &best.state, tries, views)?;
-                let other = self.descend_from(1, problem, state, views)?;
-                let steps = best.steps + other.steps;
-                best = if other.energy < best.energy { other } else { best };
-                best.steps = steps;
+                let (state, won) = searched(problem, &best.state, tries, views)?;
+                if won < WORTH_FITTING * best.energy {
+                    continue;
+                }
+                let other = self.descend_from(1, problem, state, best.energy, views)?;
+                best = best.or(other);
             }
             if best.energy >= before {
                 break;
@@ -259,38 +271,39 @@ impl Refinement {
         views: &mut [Vec<View>],
     ) -> Result<Outcome> {
         let coarsest = &self.levels[0];
-        let stop = Stop { steps: coarsest.steps, gain: GAIN };
-        let coarse = descend(problem, given.state.clone(), self.measure(coarsest), stop, views)?;
-        let mut after = self.descend_from(1, problem, coarse.state, views)?;
+        let start = given.state.clone();
+        let coarse = descend(problem, start, self.measure(coarsest), coarsest.stop(), views)?;
+        let mut after = self.descend_from(1, problem, coarse.state, NO_MATTER, views)?;
         after.steps += coarse.steps;
         // What was coarse may have led away from a good start.
         if given.energy > GOOD * after.energy {
             return Ok(after);
         }
-        let mut near = self.descend_from(self.levels.len(), problem, given.state.clone(), views)?;
-        near.steps += after.steps;
-        Ok(if near.energy < after.energy { near } else { after })
+        let start = given.state.clone();
+        let near = self.descend_from(self.levels.len(), problem, start, after.energy, views)?;
+        Ok(after.or(near))
     }
 
-    /// The levels from one on.
+    /// The levels from one on. The last is not gone through unless its first step promises to lead
+    /// below an energy.
     pub(crate) fn descend_from(
         &self,
         first: usize,
         problem: &Problem<'_>,
         start: State,
+        hope: f64,
         views: &mut [Vec<View>],
     ) -> Result<Outcome> {
         let last = self.levels.len() - 1;
         let mut steps = 0;
         let mut state = start;
         for level in &self.levels[first.min(last)..last] {
-            let stop = Stop { steps: level.steps, gain: GAIN };
-            let outcome = descend(problem, state, self.measure(level), stop, views)?;
+            let outcome = descend(problem, state, self.measure(level), level.stop(), views)?;
             steps += outcome.steps;
             state = outcome.state;
         }
         let level = &self.levels[last];
-        let stop = Stop { steps: level.steps, gain: GAIN };
+        let stop = Stop { hope, ..level.stop() };
         let mut outcome = descend(problem, state, self.measure(level), stop, views)?;
         outcome.steps += steps;
         Ok(outcome)
@@ -331,13 +344,13 @@ impl Refinement {
     }
 }
 
-/// A state with the digits in better postures.
+/// A state with the digits in better postures, and how much less speaks against it.
 fn searched(
     problem: &Problem<'_>,
     state: &State,
     tries: Tries,
     views: &mut [Vec<View>],
-) -> Result<State> {
+) -> Result<(State, f64)> {
     let Frame { evidence, prior } = problem.frames[0];
     let motions: Vec<DAffine3> = (0..evidence.len())
         .map(|view| problem.motion(&state.moments[0], &state.shared, view))
@@ -352,9 +365,10 @@ fn searched(
     };
     let mut state = state.clone();
     let pose = &mut state.moments[0].pose;
-    *pose = match tries {
+    let found = match tries {
         Tries::Digits => search.run(pose)?,
         Tries::Pairs => search.run_pairs(pose)?,
     };
-    Ok(state)
+    *pose = found.pose;
+    Ok((state, found.won))
 }

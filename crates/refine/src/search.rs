@@ -37,6 +37,20 @@ pub(crate) struct Search<'a> {
     pub(crate) views: &'a mut [View],
 }
 
+/// What a search came to.
+pub(crate) struct Found {
+    pub(crate) pose: Pose,
+    /// How much less speaks against it than against the pose that the search began at.
+    pub(crate) won: f64,
+}
+
+impl Found {
+    /// The same with digits put from one posture into another.
+    fn and(self, from: &Costed, to: &Costed) -> Self {
+        Self { pose: to.pose, won: self.won + (from.cost - to.cost) }
+    }
+}
+
 /// The hand without the digits that are tried, as each view draws it.
 struct Background {
     digits: Vec<Digit>,
@@ -66,30 +80,31 @@ struct Drawn {
 impl Search<'_> {
     /// Tries every digit in other postures, and keeps those that make the drawn silhouettes differ
     /// from the observed ones in fewer pixels, the prior taken into account.
-    pub(crate) fn run(&mut self, start: &Pose) -> Result<Pose> {
-        let mut pose = *start;
+    pub(crate) fn run(&mut self, start: &Pose) -> Result<Found> {
+        let mut found = Found { pose: *start, won: 0.0 };
         for digit in Digit::ALL {
-            let mut background = self.background(&pose, &[digit])?;
-            let standing = self.standing(&pose, &mut background)?;
+            let mut background = self.background(&found.pose, &[digit])?;
+            let standing = self.standing(&found.pose, &mut background)?;
             let mut tried = Vec::with_capacity(PLACES * PLACES);
-            for ([i, j], pose) in self.postures(digit, &pose) {
+            for ([i, j], pose) in self.postures(digit, &found.pose) {
                 let cost = self.cost_below(standing.cost + SLOPE, &pose, &mut background)?;
                 tried.extend(cost.map(|cost| Costed { cost, pose, places: [i, j, 0, 0] }));
             }
-            pose = self.lowest(&standing, tried, &mut background)?;
+            found = found.and(&standing, &self.lowest(&standing, tried, &mut background)?);
         }
-        Ok(pose)
+        Ok(found)
     }
 
     /// Tries neighbouring fingers together: where one was taken for the other, neither finds its
     /// place alone.
-    pub(crate) fn run_pairs(&mut self, start: &Pose) -> Result<Pose> {
-        let mut pose = *start;
+    pub(crate) fn run_pairs(&mut self, start: &Pose) -> Result<Found> {
+        let mut found = Found { pose: *start, won: 0.0 };
         for pair in Digit::FINGERS.windows(2) {
-            let mut background = self.background(&pose, pair)?;
-            let standing = self.standing(&pose, &mut background)?;
+            let mut background = self.background(&found.pose, pair)?;
+            let standing = self.standing(&found.pose, &mut background)?;
             let limit = standing.cost + SLOPE;
-            let (ones, others) = (self.drawn(pair[0], &pose)?, self.drawn(pair[1], &pose)?);
+            let ones = self.drawn(pair[0], &found.pose)?;
+            let others = self.drawn(pair[1], &found.pose)?;
             let mut tried = Vec::with_capacity(ones.len() * others.len());
             for one in &ones {
                 for other in &others {
@@ -108,9 +123,9 @@ impl Search<'_> {
                     }
                 }
             }
-            pose = self.lowest(&standing, tried, &mut background)?;
+            found = found.and(&standing, &self.lowest(&standing, tried, &mut background)?);
         }
-        Ok(pose)
+        Ok(found)
     }
 
     /// A digit's first two flexions on a grid over their ranges; the last joint's follows the one
@@ -167,7 +182,7 @@ impl Search<'_> {
         standing: &Costed,
         others: Vec<Costed>,
         background: &mut Background,
-    ) -> Result<Pose> {
+    ) -> Result<Costed> {
         let mut best = *standing;
         for other in valleys(others) {
             let found = self.follow(&other, background)?;
@@ -175,7 +190,7 @@ impl Search<'_> {
                 best = found;
             }
         }
-        Ok(best.pose)
+        Ok(best)
     }
 
     /// Follows a valley down by smaller and smaller steps of each angle; the last joint moves with

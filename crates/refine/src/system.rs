@@ -127,6 +127,8 @@ fn add_outer(
 pub(crate) struct Step {
     pub(crate) own: Vec<Vec<f64>>,
     pub(crate) shared: Vec<f64>,
+    /// How much energy it would win if slopes stayed as they are.
+    pub(crate) promise: f64,
 }
 
 /// The damped step −(H + damping · diag H)⁻¹ g of all frames, each frame's pose being eliminated in
@@ -165,14 +167,23 @@ pub(crate) fn solve(frames: &[FrameSystem], shared_prior: &[Known], damping: f64
     }
     (0..shared).for_each(|k| reduced[(k, k)] += damping * reduced[(k, k)].abs());
     let common = if shared > 0 { reduced.llt(Side::Lower).ok()?.solve(&slope) } else { slope };
-    let own_step = |(across, along): (Mat<f64>, Mat<f64>)| {
+    let own_step = |(across, along): (Mat<f64>, Mat<f64>)| -> Vec<f64> {
         let step = if shared > 0 { across * &common - along } else { -along };
         step.col(0).iter().copied().collect()
     };
-    Some(Step {
-        own: eliminated.into_iter().map(own_step).collect(),
-        shared: common.col(0).iter().map(|value| -value).collect(),
-    })
+    let own: Vec<Vec<f64>> = eliminated.into_iter().map(own_step).collect();
+    let shared: Vec<f64> = common.col(0).iter().map(|value| -value).collect();
+    let of_frames = frames
+        .iter()
+        .zip(&own)
+        .map(|(frame, own)| dot(&frame.own_gradient, own) + dot(&frame.shared_gradient, &shared));
+    let of_prior = shared_prior.iter().zip(&shared).map(|(known, step)| known.gradient * step);
+    let promise = -0.5 * (of_frames.sum::<f64>() + of_prior.sum::<f64>());
+    Some(Step { own, shared, promise })
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The covariance of the first `numbers` unknowns of a frame, with everything shared being known,

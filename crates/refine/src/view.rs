@@ -156,15 +156,18 @@ fn closest(seen: &[Seen], ray: DVec3, background: Option<DVec2>, hint: usize) ->
     const FACING: f64 = 12.0;
     let place = ray.truncate() / ray.z;
     let cost = |passing: &Passing| {
-        // The normal points from the ray into the solid.
+        // The normal points from the ray into the solid; a squashed one's may be longer than 1.
         let turned = background.map_or(0.0, |out| 1.0 + out.dot(passing.normal.truncate()));
-        passing.distance + 0.5 * FACING * turned
+        passing.distance + 0.5 * FACING * turned.max(0.0)
     };
     let mut best = Match::new(ray, hint, seen[hint].hull.pass(ray));
     let mut least = cost(&best.passing);
     for (solid, candidate) in seen.iter().enumerate() {
-        if solid != hint && !candidate.bound.is_beyond(place, least) {
-            let passing = candidate.hull.pass(ray);
+        if solid == hint || candidate.bound.is_beyond(place, least) {
+            continue;
+        }
+        // No cost is below the distance.
+        if let Some(passing) = candidate.hull.pass_within(least, ray) {
             let cost = cost(&passing);
             if cost < least {
                 (best, least) = (Match::new(ray, solid, passing), cost);
