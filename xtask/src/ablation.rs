@@ -11,6 +11,7 @@ use phalanx_refine::{Doubt, Refinement};
 
 use crate::held_out::Ground;
 use crate::held_out::errors::mean_error_deg;
+use crate::held_out::refined::Starts;
 use crate::refining::{Hand, Look, Refining};
 use crate::sets::{self, Augment, Set, Test};
 use crate::{files, progress};
@@ -93,7 +94,7 @@ fn refinings() -> Vec<(&'static str, Refining)> {
     let one_level = refinement.levels.last().copied().into_iter().collect();
     vec![
         ("the hand calibrated", Refining { hand: Hand::Calibrated, ..whole.clone() }),
-        ("one hypothesis", Refining { hypotheses: 0, ..whole.clone() }),
+        ("one hypothesis", Refining { starts: Starts::Estimate, ..whole.clone() }),
         ("no search of postures", with(Refinement { retries: 0, ..refinement.clone() })),
         ("no doubt of hand or cameras", with(Refinement { doubt: None, ..refinement.clone() })),
         ("no doubt of the cameras", with(Refinement { doubt: no_cameras, ..refinement.clone() })),

@@ -23,7 +23,7 @@ const PRESET: Preset = Preset::Balanced;
 /// Scenes from which an estimator learns how it errs.
 const ERROR_SCENES: usize = 5000;
 /// Poses named at most.
-const MOST: usize = 5;
+const MOST: usize = Refiner::POSES;
 /// Training samples that the naive rivals know: they keep the whole descriptor of each.
 const KNOWN: usize = 4000;
 /// Nearest neighbours that the naive rival draws its poses from.
@@ -116,7 +116,7 @@ fn answers(
         Answers { method: "principal points of the fifty nearest", poses: middles },
         Answers { method: "hypotheses", poses: all(|found| &found.poses) },
         Answers { method: "the estimate, refined", poses: all(|found| &found.estimate) },
-        Answers { method: "hypotheses, each refined", poses: all(|found| &found.refined) },
+        Answers { method: "hypotheses, refined", poses: all(|found| &found.refined) },
     ])
 }
 
@@ -146,8 +146,9 @@ fn hypotheses(
         let silhouettes: Vec<_> = describer.silhouettes(&scene)?.cloned().collect();
         let estimate = estimator.estimate_silhouettes(&silhouettes, workspace)?;
         let hypotheses = estimator.hypotheses(&estimate, MOST)?;
+        let starts = estimator.hypotheses(&estimate, refiner.starts())?;
         let evidence = refiner.evidence(&silhouettes)?;
-        let refined = refiner.refine_hypotheses(&evidence, &estimate, &hypotheses)?;
+        let refined = refiner.refine_hypotheses(&evidence, &estimate, &starts)?;
         let alone = refiner.refine(&evidence, &estimate)?;
         progress.step();
         Ok(Found {

@@ -8,14 +8,15 @@ use phalanx_refine::{Doubt, Refinement};
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
-use crate::held_out::{Ground, refined};
+use crate::held_out::Ground;
+use crate::held_out::refined::{self, Starts};
 use crate::sets::Set;
 
 /// How estimates are refined.
 #[derive(Clone)]
 pub(crate) struct Refining {
     pub(crate) refinement: Refinement,
-    pub(crate) hypotheses: usize,
+    pub(crate) starts: Starts,
     pub(crate) hand: Hand,
 }
 
@@ -42,7 +43,7 @@ impl Refining {
     pub(crate) fn whole() -> Self {
         Self {
             refinement: Refinement { doubt: Some(Doubt::default()), ..Refinement::default() },
-            hypotheses: refined::HYPOTHESES,
+            starts: Starts::Hypotheses,
             hand: Hand::Mean,
         }
     }
@@ -91,8 +92,7 @@ impl Refining {
                         (estimate, refiner.evidence_of(workspace)?, [start, estimated])
                     }
                 };
-            let refined =
-                refined::refine(estimator, refiner, &estimate, &evidence, self.hypotheses)?;
+            let refined = refined::refine(estimator, refiner, &estimate, &evidence, self.starts)?;
             let refine_ms = 1e3 * estimated.elapsed().as_secs_f64();
             progress.step();
             Ok(Some(Look {

@@ -92,7 +92,7 @@ fn refine(
     let refiner = Refiner::for_estimator(estimator, refinement)?.with_hand(hand)?;
     let evidence = refiner.evidence_of(workspace)?;
     let hypotheses = match estimator.errors() {
-        Some(_) => estimator.hypotheses(&estimate, HYPOTHESES)?,
+        Some(_) => estimator.hypotheses(&estimate, refiner.starts())?,
         None => Vec::new(),
     };
     let refined = refiner.refine_best(&evidence, &estimate, &hypotheses)?.swap_remove(0);
@@ -110,8 +110,6 @@ fn refine(
     Ok(refiner.refined_estimate(estimate, &refined)?)
 }
 
-/// Hypotheses about an estimate that are refined where one is not enough.
-const HYPOTHESES: usize = 5;
 /// Overlap (intersection over union) below which a refined hand is doubtful.
 const GOOD_OVERLAP: f64 = 0.8;
 

@@ -91,6 +91,11 @@ impl Refiner {
         Self { refinement, ..self.clone() }
     }
 
+    /// How many cameras look on.
+    pub fn views(&self) -> usize {
+        self.cameras.len()
+    }
+
     /// How it refines.
     pub fn refinement(&self) -> &Refinement {
         &self.refinement

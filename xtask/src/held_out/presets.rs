@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use super::Ground;
 use super::errors::Truth;
-use super::refined;
+use super::refined::{self, Starts};
 use super::row::{Outcome, Row};
 use crate::sets::{self, Set};
 use crate::table1::single_view;
@@ -176,9 +176,9 @@ impl Learnt {
                 (estimate, self.refiner.evidence_of(workspace)?)
             }
         };
-        let most = refined::HYPOTHESES;
+        let starts = Starts::Hypotheses;
         let refine =
-            |refiner| refined::refine(&self.estimator, refiner, &estimate, &evidence, most);
+            |refiner| refined::refine(&self.estimator, refiner, &estimate, &evidence, starts);
         let answers = self.answers.iter().map(|answer| match answer {
             Answer::Estimate => Ok(estimate.pose),
             Answer::Refined => refine(&self.refiner),

@@ -14,8 +14,14 @@ use crate::sets::{self, Augment, Set};
 
 /// Poses that tell how angles go together.
 const POSTURES: usize = 2000;
-/// Hypotheses about each estimate.
-pub(crate) const HYPOTHESES: usize = 5;
+/// Where refinement starts.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Starts {
+    Estimate,
+    /// Hypotheses about it too, if need be.
+    Hypotheses,
+}
+
 /// Frames from which each hand is calibrated.
 const CALIBRATION_FRAMES: usize = 20;
 
@@ -32,17 +38,17 @@ pub(crate) fn refiner(
     Ok(Refiner::new(estimator.rig(), &ground.hand, &postures, refinement)?)
 }
 
-/// The refined pose of one frame; `most` hypotheses about its estimate are tried, if need be.
+/// The refined pose of one frame.
 pub(crate) fn refine(
     estimator: &Estimator,
     refiner: &Refiner,
     estimate: &Estimate,
     evidence: &[Evidence],
-    most: usize,
+    starts: Starts,
 ) -> Result<Pose> {
-    let hypotheses = match most {
-        0 => Vec::new(),
-        most => estimator.hypotheses(estimate, most)?,
+    let hypotheses = match starts {
+        Starts::Estimate => Vec::new(),
+        Starts::Hypotheses => estimator.hypotheses(estimate, refiner.starts())?,
     };
     Ok(refiner.refine_best(evidence, estimate, &hypotheses)?[0].pose)
 }
