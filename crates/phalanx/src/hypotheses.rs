@@ -126,7 +126,7 @@ impl Refiner {
     /// How many hypotheses about an estimate are worth refining: one view leaves so much open that more
     /// starts lead to poses which explain it better.
     pub fn starts(&self) -> usize {
-        if self.views() == 1 { 4 * Self::POSES } else { Self::POSES }
+        if self.views() == 1 { 2 * Self::POSES } else { Self::POSES }
     }
 
     /// Refines every hypothesis about an estimate, each with what it says of itself as the prior, and
