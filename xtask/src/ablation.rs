@@ -25,7 +25,11 @@ const EVERY: usize = 17;
 const FEW: usize = 2000;
 
 #[derive(Args)]
-pub(crate) struct Arguments {}
+pub(crate) struct Arguments {
+    /// How many scenes are learnt from; those of the preset by default.
+    #[arg(long, value_name = "N", value_parser = sets::samples)]
+    samples: Option<usize>,
+}
 
 /// How an estimator is learnt.
 struct Learning {
@@ -41,7 +45,7 @@ struct Errors {
 }
 
 /// Writes the page and prints it.
-pub(crate) fn run(_: &Arguments) -> Result<()> {
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let ground = Ground {
         rig: files::rig(None)?,
         hand: files::hand(None)?,
@@ -67,19 +71,22 @@ pub(crate) fn run(_: &Arguments) -> Result<()> {
         Ok(())
     };
     let whole = Refining::whole();
-    let estimator = Learning::whole().run(&ground, &bar)?;
+    let samples = arguments.samples.unwrap_or(PRESET.scenes());
+    let estimator = Learning::of(samples).run(&ground, &bar)?;
     push("the default preset, refined with the mean hand", &estimator, &whole)?;
     for (name, refining) in refinings() {
         push(name, &estimator, &refining)?;
     }
-    for (name, learning) in learnings() {
+    for (name, learning) in learnings(samples) {
         push(name, &learning.run(&ground, &bar)?, &whole)?;
     }
     drop(bar);
     let page = format!(
         "# What each part gives\n\n\
-         Written by `cargo xtask ablation`: mean absolute error over the 21 active angles, degrees, three\n\
-         views, every {EVERY}th sample of each test. Each line changes one thing of the first.\n\n{table}\n"
+         Written by `cargo xtask ablation --samples {samples}`: mean absolute error over the 21 active angles,\n\
+         degrees, three views, every {EVERY}th sample of each test. Each line changes one thing of the first.\n\
+         All but the one of few scenes learn from {samples}, the preset by itself from {}.\n\n{table}\n",
+        PRESET.scenes(),
     );
     files::write_whole(&files::in_repository(PAGE), page.as_bytes())?;
     files::print(&page)
@@ -104,8 +111,8 @@ fn refinings() -> Vec<(&'static str, Refining)> {
 }
 
 /// What is changed in learning.
-fn learnings() -> Vec<(&'static str, Learning)> {
-    let whole = Learning::whole;
+fn learnings(samples: usize) -> Vec<(&'static str, Learning)> {
+    let whole = || Learning::of(samples);
     let training = |change: fn(&mut Training)| {
         let mut learning = whole();
         change(&mut learning.training);
@@ -132,9 +139,9 @@ fn learnings() -> Vec<(&'static str, Learning)> {
 }
 
 impl Learning {
-    /// The preset's.
-    fn whole() -> Self {
-        Self { training: PRESET.training(), scenes: PRESET.scenes(), augment: Augment::Yes }
+    /// As the preset does, from so many scenes.
+    fn of(scenes: usize) -> Self {
+        Self { training: PRESET.training(), scenes, augment: Augment::Yes }
     }
 
     fn run(&self, ground: &Ground, progress: &dyn Progress) -> Result<Estimator> {

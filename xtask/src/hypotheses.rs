@@ -88,7 +88,8 @@ pub(crate) fn run(_: &Arguments) -> Result<()> {
          degrees, of the first pose named, and of whichever of the first three and five is the\n\
          nearest to the truth; every {EVERY}th sample. Learnt from {} random poses by the preset\n\
          `default`, but of undamaged scenes of one hand, which is easier than what the preset is for; how\n\
-         it errs, from {ERROR_SCENES} others. The neighbours are sought among {KNOWN}.\n\n{table}\n",
+         it errs, from {ERROR_SCENES} others. The neighbours are sought among {KNOWN}. Refinement starts from twice as\n\
+         many hypotheses through one view, and names five poses that stand for what comes out.\n\n{table}\n",
         PRESET.scenes()
     );
     files::write_whole(&files::in_repository(PAGE), page.as_bytes())?;
