@@ -2,8 +2,9 @@
 
 use std::sync::LazyLock;
 
-use phalanx::{Error, Estimator, NominalScenes, Silent};
+use phalanx::{Error, Estimator, NominalScenes, Picture, Refiner, Silent, Workspace};
 use phalanx_hand::{Dof, HandShape, Pose};
+use phalanx_refine::Refinement;
 
 use crate::desk::{FROM_TOP, closing, difference_deg, estimate, masks, mean, top, unseen};
 
@@ -38,6 +39,39 @@ fn the_first_is_the_estimate_and_the_nearest_is_nearer() {
             assert_eq!(hypothesis.pose[Dof::ThetaX], estimate.pose[Dof::ThetaX]);
             assert_eq!(hypothesis.std[Dof::ThetaX.index()], 0.0);
         }
+    }
+    let (first, nearest) = (mean(first.into_iter()), mean(nearest.into_iter()));
+    assert!(nearest < 0.95 * first, "{nearest} {first}");
+}
+
+/// Poses that stand for all refined ones: as many as are asked for, all different, the same in whatever
+/// order their starts come, and one of them nearer to the truth than the first alone.
+#[test]
+fn refined_poses_stand_for_all_that_came_out() {
+    let refiner = Refiner::for_estimator(&LEARNT, Refinement::default()).unwrap();
+    let (mut first, mut nearest) = (Vec::new(), Vec::new());
+    for pose in unseen() {
+        let masks = masks(&top(), &pose);
+        let mut workspace = Workspace::default();
+        let pictures: Vec<_> = masks.iter().map(Picture::Mask).collect();
+        let estimate = LEARNT.estimate(&pictures, &mut workspace).unwrap();
+        let evidence = refiner.evidence_of(&workspace).unwrap();
+        let mut starts = LEARNT.hypotheses(&estimate, refiner.starts()).unwrap();
+        assert!(starts.len() > Refiner::POSES);
+        let poses: Vec<Pose> = (refiner.refine_hypotheses(&evidence, &estimate, &starts).unwrap())
+            .into_iter()
+            .map(|refined| refined.pose)
+            .collect();
+        assert_eq!(poses.len(), Refiner::POSES);
+        for (k, one) in poses.iter().enumerate() {
+            assert!(poses[..k].iter().all(|other| difference_deg(one, other) > 0.0));
+        }
+        starts.reverse();
+        let again = refiner.refine_hypotheses(&evidence, &estimate, &starts).unwrap();
+        assert!(again.iter().zip(&poses).all(|(again, pose)| again.pose == *pose));
+        first.push(difference_deg(&poses[0], &pose));
+        let errors = poses.iter().map(|refined| difference_deg(refined, &pose));
+        nearest.push(errors.fold(f64::INFINITY, f64::min));
     }
     let (first, nearest) = (mean(first.into_iter()), mean(nearest.into_iter()));
     assert!(nearest < 0.95 * first, "{nearest} {first}");
