@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use cpu_time::ThreadTime;
-use phalanx::{Estimator, Framing, Picture, Progress, SceneDescriber, Scenes, Workspace};
+use phalanx::{Estimate, Estimator, Framing, Picture, Progress, SceneDescriber, Scenes, Workspace};
 use phalanx_hand::Pose;
 use phalanx_refine::{Doubt, Refinement};
 use phalanx_segmentation::Silhouette;
@@ -17,7 +17,16 @@ use crate::sets::Set;
 pub(crate) struct Refining {
     pub(crate) refinement: Refinement,
     pub(crate) starts: Starts,
+    pub(crate) what: What,
     pub(crate) hand: Hand,
+}
+
+/// What is refined.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum What {
+    Estimate,
+    /// The truth, as if it had been estimated: where a perfect estimate would lead.
+    Truth,
 }
 
 /// The hand that is refined with.
@@ -44,6 +53,7 @@ impl Refining {
         Self {
             refinement: Refinement { doubt: Some(Doubt::default()), ..Refinement::default() },
             starts: Starts::Hypotheses,
+            what: What::Estimate,
             hand: Hand::Mean,
         }
     }
@@ -92,7 +102,12 @@ impl Refining {
                         (estimate, refiner.evidence_of(workspace)?, [start, estimated])
                     }
                 };
-            let refined = refined::refine(estimator, refiner, &estimate, &evidence, self.starts)?;
+            let refined_from = match self.what {
+                What::Estimate => estimate.clone(),
+                What::Truth => Estimate { pose: scene.pose, ..estimate.clone() },
+            };
+            let refined =
+                refined::refine(estimator, refiner, &refined_from, &evidence, self.starts)?;
             let refine_ms = 1e3 * estimated.elapsed().as_secs_f64();
             progress.step();
             Ok(Some(Look {
