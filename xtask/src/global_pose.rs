@@ -11,7 +11,7 @@ use phalanx_hand::{Dof, Pose};
 
 use crate::held_out::Ground;
 use crate::held_out::refined::Starts;
-use crate::refining::{Look, Refining, What};
+use crate::refining::{Believed, Look, Refining};
 use crate::sets::{self, Test};
 use crate::{files, progress};
 
@@ -70,7 +70,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         };
         let found = looks(Refining::whole())?;
         let alone = Refining { starts: Starts::Estimate, ..Refining::whole() };
-        let from_truth = looks(Refining { what: What::Truth, ..alone })?;
+        let from_truth = looks(Refining { believed: Believed::Truth, ..alone })?;
         looked_at = found.len();
         let views = ground.rig.cameras.len();
         table.add_row(row(views, "estimated", &of(&found, |look| &look.estimate)));

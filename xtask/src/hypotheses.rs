@@ -89,8 +89,8 @@ pub(crate) fn run(_: &Arguments) -> Result<()> {
          nearest to the truth; every {EVERY}th sample. Learnt from {} random poses by the preset\n\
          `default`, but of undamaged scenes of one hand, which is easier than what the preset is for; how\n\
          it errs, from {ERROR_SCENES} others. The neighbours are sought among {KNOWN}. Refinement starts from twice as\n\
-         many hypotheses through one view, and names five poses that stand for what comes out. The truth, refined as if it had been estimated,\n\
-         says where a perfect estimate would lead.\n\n{table}\n",
+         many hypotheses through one view, and names five poses that stand for what comes out. The truth,\n\
+         refined as if it had been estimated, says where a perfect estimate would lead.\n\n{table}\n",
         PRESET.scenes()
     );
     files::write_whole(&files::in_repository(PAGE), page.as_bytes())?;
@@ -129,7 +129,7 @@ struct Found {
     poses: Vec<Pose>,
     /// The estimate alone, refined.
     estimate: Vec<Pose>,
-    /// Each refined, the most plausible first.
+    /// Those that stand for all that refinement made of the starts, the one to be believed first.
     refined: Vec<Pose>,
     /// The truth, refined as if it had been estimated: where a perfect estimate would lead.
     from_truth: Vec<Pose>,

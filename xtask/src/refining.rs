@@ -17,15 +17,15 @@ use crate::sets::Set;
 pub(crate) struct Refining {
     pub(crate) refinement: Refinement,
     pub(crate) starts: Starts,
-    pub(crate) what: What,
+    pub(crate) believed: Believed,
     pub(crate) hand: Hand,
 }
 
-/// What is refined.
+/// The pose that refinement is told was estimated.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum What {
+pub(crate) enum Believed {
     Estimate,
-    /// The truth, as if it had been estimated: where a perfect estimate would lead.
+    /// Shows where a perfect estimate would lead.
     Truth,
 }
 
@@ -53,7 +53,7 @@ impl Refining {
         Self {
             refinement: Refinement { doubt: Some(Doubt::default()), ..Refinement::default() },
             starts: Starts::Hypotheses,
-            what: What::Estimate,
+            believed: Believed::Estimate,
             hand: Hand::Mean,
         }
     }
@@ -102,12 +102,11 @@ impl Refining {
                         (estimate, refiner.evidence_of(workspace)?, [start, estimated])
                     }
                 };
-            let refined_from = match self.what {
-                What::Estimate => estimate.clone(),
-                What::Truth => Estimate { pose: scene.pose, ..estimate.clone() },
+            let believed = match self.believed {
+                Believed::Estimate => estimate.clone(),
+                Believed::Truth => Estimate { pose: scene.pose, ..estimate.clone() },
             };
-            let refined =
-                refined::refine(estimator, refiner, &refined_from, &evidence, self.starts)?;
+            let refined = refined::refine(estimator, refiner, &believed, &evidence, self.starts)?;
             let refine_ms = 1e3 * estimated.elapsed().as_secs_f64();
             progress.step();
             Ok(Some(Look {

@@ -185,7 +185,7 @@ impl Refiner {
 
     /// Refines an estimate and, where that leaves borders apart, a hand that may be anywhere had to be
     /// doubted, or there is one view alone, which several poses can explain, every hypothesis about it
-    /// too; the most plausible first.
+    /// too; the pose to be believed first.
     ///
     /// # Errors
     /// As of [`refine`](Self::refine).

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::doubt::{CameraDoubt, HandDoubt};
 use crate::fit::{State, overlaps};
 use crate::problem::{Frame, Freedom, Problem};
-use crate::refinement::NO_MATTER;
+use crate::refinement::ANY_ENERGY;
 use crate::view::View;
 use crate::{Doubt, Error, Evidence, PosePrior, Refinement, Result};
 
@@ -107,7 +107,7 @@ impl Calibration {
         };
         let views = frames.iter().map(|frame| frame.evidence.iter().map(View::new).collect());
         let mut views: Vec<Vec<View>> = views.collect::<Result<_>>()?;
-        let outcome = self.refinement.descend_from(1, &problem, start, NO_MATTER, &mut views)?;
+        let outcome = self.refinement.descend_from(1, &problem, start, ANY_ENERGY, &mut views)?;
         let overlaps = overlaps(&problem, &outcome.state, self.refinement.finest(), &mut views)?;
         let shared = &outcome.state.shared;
         let camera = |(k, evidence): (usize, &Evidence)| {

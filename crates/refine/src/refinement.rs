@@ -16,7 +16,8 @@ use crate::{Error, Evidence, PosePrior, Result};
 pub struct Refinement {
     /// From coarse to fine; at the last every place along the border is looked at.
     pub levels: Vec<Level>,
-    /// Standard deviation of a border's place, px.
+    /// Standard deviation of a border's place, px; the levels' reach goes with it
+    /// ([`of_noise`](Self::of_noise)).
     pub noise: f64,
     /// Standard deviation of what segmentation adds to or takes from a whole border, px.
     pub margin: f64,
@@ -53,8 +54,8 @@ enum Tries {
 /// A start of at most so many times the energy that was reached from it is good in itself.
 const GOOD: f64 = 2.0;
 
-/// Any energy is below it.
-pub(crate) const NO_MATTER: f64 = f64::INFINITY;
+/// The hope of a fit that is worth its steps whatever energy they lead to.
+pub(crate) const ANY_ENERGY: f64 = f64::INFINITY;
 
 /// Share of the energy that a step must win to be followed by another.
 const GAIN: f64 = 1e-3;
@@ -104,7 +105,7 @@ pub struct Refined {
 
 impl Level {
     fn stop(&self) -> Stop {
-        Stop { steps: self.steps, gain: GAIN, hope: NO_MATTER }
+        Stop { steps: self.steps, gain: GAIN, hope: ANY_ENERGY }
     }
 }
 
@@ -136,6 +137,27 @@ impl Default for Doubt {
 }
 
 impl Refinement {
+    /// The default where borders are known to a standard deviation of `noise` px: as much further apart
+    /// they still count, but nowhere further than the coarsest level lets them. Borders that no longer
+    /// count within what they are known to let a digit stretch out beyond a silhouette at no cost.
+    ///
+    /// ```
+    /// use phalanx_refine::Refinement;
+    ///
+    /// assert_eq!(Refinement::of_noise(0.5), Refinement::default());
+    /// let levels = Refinement::of_noise(2.0).levels;
+    /// let reaches: Vec<f64> = levels.iter().map(|level| level.reach).collect();
+    /// assert_eq!(reaches, [12.0, 12.0, 4.0]);
+    /// ```
+    #[must_use]
+    pub fn of_noise(noise: f64) -> Self {
+        let Self { levels, noise: usual, .. } = Self::default();
+        let farthest = levels.iter().map(|level| level.reach).fold(0.0, f64::max);
+        let reach = |reach: f64| (noise / usual * reach).min(farthest);
+        let level = |level: Level| Level { reach: reach(level.reach), ..level };
+        Self { noise, levels: levels.into_iter().map(level).collect(), ..Self::default() }
+    }
+
     /// Fits the pose of a hand, whose frame at rest is mapped to the world by `rest`, to what
     /// cameras saw, from `start`. Those numbers that the prior does not leave open keep their
     /// values.
@@ -224,11 +246,11 @@ impl Refinement {
     ) -> Result<Outcome> {
         let moment = problem.moment(0, &fitted.state.moments[0].pose);
         let state = State { moments: vec![moment], shared: problem.shared() };
-        let mut best = self.descend_from(1, problem, state.clone(), NO_MATTER, views)?;
+        let mut best = self.descend_from(1, problem, state.clone(), ANY_ENERGY, views)?;
         if best.energy > fitted.energy {
             // What was coarse led away.
             let tried = best.steps;
-            best = self.descend_from(self.levels.len(), problem, state, NO_MATTER, views)?;
+            best = self.descend_from(self.levels.len(), problem, state, ANY_ENERGY, views)?;
             best.steps += tried;
         }
         best.steps += fitted.steps;
@@ -273,7 +295,7 @@ impl Refinement {
         let coarsest = &self.levels[0];
         let start = given.state.clone();
         let coarse = descend(problem, start, self.measure(coarsest), coarsest.stop(), views)?;
-        let mut after = self.descend_from(1, problem, coarse.state, NO_MATTER, views)?;
+        let mut after = self.descend_from(1, problem, coarse.state, ANY_ENERGY, views)?;
         after.steps += coarse.steps;
         // What was coarse may have led away from a good start.
         if given.energy > GOOD * after.energy {

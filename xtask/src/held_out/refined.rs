@@ -14,6 +14,12 @@ use crate::sets::{self, Augment, Set};
 
 /// Poses that tell how angles go together.
 const POSTURES: usize = 2000;
+/// Frames from which each hand is calibrated.
+const CALIBRATION_FRAMES: usize = 20;
+
+/// How far a calibrated hand may still be from the true one.
+const CALIBRATED: HandDoubt = HandDoubt { size: 0.005, each: 0.02 };
+
 /// Where refinement starts.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Starts {
@@ -21,12 +27,6 @@ pub(crate) enum Starts {
     /// Hypotheses about it too, if need be.
     Hypotheses,
 }
-
-/// Frames from which each hand is calibrated.
-const CALIBRATION_FRAMES: usize = 20;
-
-/// How far a calibrated hand may still be from the true one.
-const CALIBRATED: HandDoubt = HandDoubt { size: 0.005, each: 0.02 };
 
 /// Refines with the hand as given.
 pub(crate) fn refiner(

@@ -7,7 +7,7 @@ use phalanx::{
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_refine::{
-    Calibration, CalibrationFrame, Evidence, HandDoubt, Level, PosePrior, Refined, Refinement,
+    Calibration, CalibrationFrame, Evidence, HandDoubt, PosePrior, Refined, Refinement,
 };
 use rayon::prelude::*;
 
@@ -24,9 +24,6 @@ const HAND: HandDoubt = HandDoubt { size: 0.2, each: 0.06 };
 /// Standard deviation of a border's place in photographs, px: more than in drawn pictures, and over
 /// whole stretches of the border, so that what is seen outweighs what hands do less.
 const NOISE_PX: f64 = 2.0;
-
-/// How far borders may be apart and still count where the fit is coarsest, px.
-const FARTHEST_PX: f64 = 12.0;
 
 /// How far an angle moves from one frame to the next, standard deviation.
 const MOTION_DEG: f64 = 10.0;
@@ -61,17 +58,8 @@ pub(super) fn learn(
     if part.left_out() > 0 {
         eprintln!("{} of {samples} samples could not be described", part.left_out());
     }
-    let refiner = Refiner::new(rig, hand, &set.poses, refinement())?;
+    let refiner = Refiner::new(rig, hand, &set.poses, Refinement::of_noise(NOISE_PX))?;
     Ok(Learnt { estimator: part.finish(progress)?, refiner })
-}
-
-/// As of drawn pictures, but that borders are known less well and so have to be further apart before they
-/// no longer count.
-fn refinement() -> Refinement {
-    let drawn = Refinement::default();
-    let share = NOISE_PX / drawn.noise;
-    let level = |level: &Level| Level { reach: (share * level.reach).min(FARTHEST_PX), ..*level };
-    Refinement { noise: NOISE_PX, levels: drawn.levels.iter().map(level).collect(), ..drawn }
 }
 
 impl Learnt {
