@@ -5,10 +5,11 @@
 //! triangulation when multiple views are used".
 
 use glam::{DVec2, DVec3};
-use phalanx_camera::{Camera, Ray, Rig, triangulate};
+use phalanx_camera::{Rig, triangulate};
 use phalanx_hand::{Dof, HandShape, Pose, Primitive, Side};
 use phalanx_segmentation::LocatedHand;
 
+use crate::sighting::{Sighting, arm};
 use crate::{Error, Estimate, Result, Window};
 
 /// A pose whose global part was found from the hands' places in the views.
@@ -66,11 +67,11 @@ pub fn initial_global(
     fingers: &Pose,
     hands: &[Option<LocatedHand>],
 ) -> Result<GlobalStart> {
-    let views: Vec<View> = rig
+    let views: Vec<Sighting> = rig
         .cameras
         .iter()
         .zip(hands)
-        .filter_map(|(camera, hand)| Some(View::new(camera, hand.as_ref()?)))
+        .filter_map(|(camera, hand)| Some(Sighting::new(camera, hand.as_ref()?)))
         .collect::<Result<_>>()?;
     match views.as_slice() {
         [] => Err(Error::Mismatch { part: "views with a hand", found: 0, expected: 1 }),
@@ -78,7 +79,8 @@ pub fn initial_global(
         views => {
             let met = triangulate(&views.iter().map(|view| view.wrist).collect::<Vec<_>>())?;
             let rest = rig.volume.rest_frame().matrix3.z_axis;
-            let direction = arm(views, rest);
+            // Where the planes are all but parallel, the direction at rest decides.
+            let direction = arm(views).unwrap_or_else(|| views[0].in_plane(rest));
             Ok(GlobalStart {
                 pose: placed(rig, hand, fingers, met.point, direction),
                 miss: met.spread,
@@ -87,65 +89,9 @@ pub fn initial_global(
     }
 }
 
-/// What one camera knows of the arm.
-struct View<'a> {
-    camera: &'a Camera,
-    hand: &'a LocatedHand,
-    wrist: Ray,
-    /// Normal of the plane through the camera in which the arm lies: the camera sees the hand's end
-    /// of it turned about the normal from the wrist.
-    normal: DVec3,
-}
-
-impl<'a> View<'a> {
-    fn new(camera: &'a Camera, hand: &'a LocatedHand) -> Result<Self> {
-        let ray = |pixel: DVec2| {
-            let no_window = || Error::NoWindow { camera: camera.name.clone(), pixel };
-            camera.unproject(pixel).ok_or_else(no_window)
-        };
-        let [at, along] = [hand.wrist, hand.direction].map(DVec2::from_array);
-        let wrist = ray(at)?;
-        let ahead = ray(at + along * (0.5 * hand.width))?;
-        Ok(Self {
-            camera,
-            hand,
-            wrist,
-            normal: wrist.direction.cross(ahead.direction).normalize_or_zero(),
-        })
-    }
-
-    /// The direction to which the arm goes in the picture, as far as it is across the view.
-    fn across(&self) -> DVec3 {
-        self.normal.cross(self.wrist.direction)
-    }
-}
-
-/// The arm's direction, in the world: where the views' planes meet. Each pair of planes says so with
-/// the sine of their angle. `rest` decides where planes are all but parallel.
-fn arm(views: &[View<'_>], rest: DVec3) -> DVec3 {
-    let mut sum = DVec3::ZERO;
-    for (k, first) in views.iter().enumerate() {
-        for second in &views[k + 1..] {
-            let meet = first.normal.cross(second.normal);
-            let sense = meet.dot(first.across()) + meet.dot(second.across());
-            sum += meet * sense.signum();
-        }
-    }
-    // A pair that is a degree from parallel says nothing.
-    if sum.length() > 0.02 { sum.normalize() } else { in_plane(&views[0], rest) }
-}
-
-/// The direction in the plane of a view's arm that is nearest to `rest`, and goes the way that is
-/// seen.
-fn in_plane(view: &View<'_>, rest: DVec3) -> DVec3 {
-    let flat = rest - view.normal * rest.dot(view.normal);
-    let flat = flat.normalize_or(view.across());
-    if flat.dot(view.across()) < 0.0 { view.across() } else { flat }
-}
-
 /// The start from a single view.
-fn one_view(rig: &Rig, hand: &HandShape, fingers: &Pose, view: &View<'_>) -> GlobalStart {
-    let direction = in_plane(view, rig.volume.rest_frame().matrix3.z_axis);
+fn one_view(rig: &Rig, hand: &HandShape, fingers: &Pose, view: &Sighting<'_>) -> GlobalStart {
+    let direction = view.in_plane(rig.volume.rest_frame().matrix3.z_axis);
     let ray = view.wrist;
     let mut distance = (rig.volume.center - ray.origin).dot(ray.direction).max(1.0);
     let mut pose = *fingers;
@@ -160,7 +106,7 @@ fn one_view(rig: &Rig, hand: &HandShape, fingers: &Pose, view: &View<'_>) -> Glo
 }
 
 /// How far the posed hand reaches beyond its wrist along the arm in a view, px.
-fn length_in_picture(rig: &Rig, hand: &HandShape, pose: &Pose, view: &View<'_>) -> Option<f64> {
+fn length_in_picture(rig: &Rig, hand: &HandShape, pose: &Pose, view: &Sighting<'_>) -> Option<f64> {
     let posed = hand.pose(pose, &rig.volume.rest_frame());
     let wrist = view.camera.project(posed.joints[0])?;
     let along = DVec2::from_array(view.hand.direction);

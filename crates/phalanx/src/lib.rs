@@ -26,6 +26,7 @@ mod regression;
 mod regressor;
 mod scene;
 mod shard;
+mod sighting;
 mod training;
 mod training_views;
 mod window;

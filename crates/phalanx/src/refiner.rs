@@ -18,13 +18,15 @@ const POSTURES: u64 = 2000;
 
 /// Where borders stay further apart than this, px, other starts are worth their time. Two views leave
 /// more open, so that what fits well may still be wrong; a hand that had to be doubted never fits as
-/// well. Where the hand may be anywhere, a wrong posture is what most doubts come from.
+/// well. Where the hand may be anywhere, its fingers are estimated less well, and a wrong posture is what
+/// most doubts come from.
 fn apart(refined: &Refined, estimate: &Estimate) -> f64 {
     let is_anywhere = PLACED.iter().any(|dof| estimate.std[dof.index()] > 0.0);
     match (refined.doubted, refined.overlaps.len()) {
         (true, _) if is_anywhere => 0.0, // always
         (true, _) => 0.35,
         (false, 2) => 0.28,
+        (false, _) if is_anywhere => 0.3,
         (false, _) => 0.33,
     }
 }

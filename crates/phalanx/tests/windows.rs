@@ -160,6 +160,39 @@ fn hands_are_placed_and_refined_where_they_are() {
     }
 }
 
+/// A fist of which one finger points on along the arm, so that it looks like a hand on an arm of its own.
+#[test]
+fn a_pointing_finger_is_not_taken_for_a_hand() {
+    const DEGREES: [[f64; 4]; 5] = [
+        [30.0, -8.0, 18.0, 24.0],
+        [4.0, 50.0, 88.0, 63.0],
+        [11.0, -10.0, 6.0, 5.0],
+        [5.0, 79.0, 5.0, 1.0],
+        [-5.0, 85.0, 8.0, 3.0],
+    ];
+    let rig = rig();
+    let mut pose = Pose::REST;
+    for (digit, degrees) in Digit::ALL.into_iter().zip(DEGREES) {
+        for (dof, degrees) in digit.dofs().into_iter().zip(degrees) {
+            pose[dof] = degrees.to_radians();
+        }
+    }
+    for (dof, degrees) in [(Dof::ThetaX, 23.6_f64), (Dof::ThetaY, 12.5), (Dof::ThetaZ, 60.5)] {
+        pose[dof] = degrees.to_radians();
+    }
+    for (dof, mm) in [(Dof::TX, -4.0), (Dof::TY, -48.6), (Dof::TZ, -40.6)] {
+        pose[dof] = mm;
+    }
+    let masks: Vec<GrayImage> = rig.cameras.iter().map(|camera| mask(camera, &pose)).collect();
+    let windows = WindowFinder::default().find(&rig.cameras, &masks, None).unwrap();
+    let posed = HandShape::adult().pose(&pose, &rig.volume.rest_frame());
+    for (camera, window) in rig.cameras.iter().zip(windows) {
+        let wrist = camera.project(posed.joints[0]).unwrap();
+        let off = wrist.distance(window.hand.wrist.into());
+        assert!(off < window.hand.width, "{}: the wrist is {off} px off", camera.name);
+    }
+}
+
 /// A hand whose fingers reach beyond the picture is not taken for one that ends there.
 #[test]
 fn what_is_beyond_the_picture_is_not_known() {
