@@ -164,15 +164,17 @@ fn rig(folder: &Path) -> Result<Rig> {
     Ok(rig)
 }
 
-/// Looks for the hand in each frame, near where it was in the frame before.
+/// Looks for the hand in each frame, near where it was in the frame before unless that did not show
+/// the whole of it.
 fn look_at(rig: &Rig, frames: Vec<Frame>) -> Vec<Look> {
     let (skin, mut finder, mut last) = (SkinModel::builtin(), WindowFinder::default(), None);
     let mut looks = Vec::with_capacity(frames.len());
     for Frame { name, images } in frames {
         let masks: Vec<GrayImage> = images.iter().map(|image| skin.segment(image)).collect();
         let seen = see(rig, &masks, &mut finder, last);
-        last = seen.as_ref().ok().map(|seen| seen.wrist);
-        looks.push(Look { name, images, masks, seen });
+        let look = Look { name, images, masks, seen };
+        last = look.seen.as_ref().ok().filter(|_| is_whole(&look)).map(|seen| seen.wrist);
+        looks.push(look);
     }
     looks
 }

@@ -17,7 +17,7 @@ const MOTION: f64 = 50.0;
 
 /// How wide wrists are seen, mm, and the standard deviation of its logarithm: a finger is not half as wide.
 const WIDTH: f64 = 54.0;
-const WIDTH_SPREAD: f64 = 0.2;
+const WIDTH_SPREAD: f64 = 0.25;
 
 /// How far an arm is usually seen from where the views together say that it points to, as a share of
 /// its length.
@@ -85,10 +85,11 @@ fn cost(chosen: &[&Candidate<'_>], last: Option<DVec3>) -> f64 {
 fn disagreement(sightings: &[Sighting<'_>], wrist: DVec3) -> f64 {
     let width = |sighting: &Sighting<'_>| (sighting.width_mm(wrist) / WIDTH).ln() / WIDTH_SPREAD;
     let widths = sightings.iter().map(|sighting| width(sighting).powi(2)).sum::<f64>();
-    let turns = arm(sightings).map_or(0.0, |arm| {
-        sightings.iter().map(|sighting| (sighting.miss(arm) / TURN).powi(2)).sum()
-    });
-    widths + turns
+    let turns =
+        |arm| -> f64 { sightings.iter().map(|sighting| (sighting.miss(arm) / TURN).powi(2)).sum() };
+    // Where planes are nearly parallel, they meet anywhere; what one view sees then agrees with others.
+    let arms = arm(sightings).into_iter().chain(sightings.iter().map(Sighting::across));
+    widths + arms.map(turns).fold(f64::INFINITY, f64::min)
 }
 
 /// The squared distance of a point from a ray's line.
