@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use glam::DVec3;
-use phalanx_hand::JOINTS;
+use phalanx_hand::{Digit, JOINTS};
 
 /// Degrees by which the reference's two views may differ for it to count.
 const AGREED_DEG: f64 = 10.0;
@@ -52,9 +52,12 @@ pub(super) fn reference(folder: &Path, names: &[&str]) -> Result<Vec<[Option<f64
     Ok(names.iter().map(of_frame).collect())
 }
 
-/// Mean absolute differences, angle by angle, beside those of the best constant.
+/// Mean absolute differences, angle by angle, beside those of the best constant; and in how many frames
+/// the reference is beyond what the joint can do.
 pub(super) fn table(found: &[[f64; COUNT]], reference: &[[Option<f64>; COUNT]]) -> String {
-    let mut text = String::from("angle        frames   ours  best constant, degrees\n");
+    let mut text = String::from(
+        "angle        frames   ours  best constant, degrees  reference beyond the joint\n",
+    );
     for k in 0..COUNT {
         let pairs: Vec<(f64, f64)> =
             found.iter().zip(reference).filter_map(|(f, r)| Some((f[k], r[k]?))).collect();
@@ -69,7 +72,10 @@ pub(super) fn table(found: &[[f64; COUNT]], reference: &[[Option<f64>; COUNT]]) 
         truths.sort_by(f64::total_cmp);
         let median = truths[truths.len() / 2];
         let constant = truths.iter().map(|truth| (truth - median).abs()).sum::<f64>() / count;
-        writeln!(text, "{digit:6} {place:4} {:7}  {ours:5.1}  {constant:5.1}", pairs.len())
+        let most = Digit::ALL[k / 3].dofs()[1 + k % 3].range().1.to_degrees();
+        let beyond = truths.iter().filter(|&&truth| truth > most).count();
+        let frames = pairs.len();
+        writeln!(text, "{digit:6} {place:4} {frames:7}  {ours:5.1}  {constant:5.1}  {beyond:25}")
             .expect("to a string");
     }
     text

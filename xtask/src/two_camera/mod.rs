@@ -25,6 +25,8 @@ use frames::Frame;
 const SQUARE_MM: f64 = 50.0;
 /// Hands that are learnt from, unless it is said how many.
 const SAMPLES: usize = 3000;
+/// How often the hand is calibrated, each time from frames refined with it as it was before.
+const ROUNDS: usize = 3;
 /// Overlap that is asked for in every view.
 const GOAL: f64 = 0.88;
 /// Side of the cube in which the wrist moves, mm.
@@ -111,8 +113,8 @@ fn fit(
     }
     let mean = learnt.estimator.hand();
     let with_mean = learnt.refine(mean, &starts, |k| fit::postures(&starts[k].estimate.pose))?;
-    let own = learnt.calibrate(&starts, &with_mean)?;
-    let with_own = learnt.refine(&own, &starts, |k| vec![with_mean[k].pose])?;
+    let rounds = own_hand(&learnt, &starts, &with_mean)?;
+    let (own, with_own) = rounds.last().context("no round of calibration")?;
     let names: Vec<&str> = whole.iter().map(|look| look.name.as_str()).collect();
     let reference = angles::reference(folder, &names)?;
     let rest = rig.volume.rest_frame();
@@ -122,18 +124,49 @@ fn fit(
         let found: Vec<_> = poses.iter().map(of).collect();
         format!("{what}\n{}", angles::table(&found, &reference))
     };
+    let poses_of =
+        |fitted: &[Refined]| -> Vec<Pose> { fitted.iter().map(|fit| fit.pose).collect() };
     let mut report = vec![table("estimated", mean, &estimates)];
-    for (what, hand, fitted) in [("mean", mean, &with_mean), ("own", &own, &with_own)] {
+    for (round, (hand, fitted)) in rounds.iter().enumerate() {
+        let what = said_of_round(round, hand, fitted);
+        report.push(table(&what, hand, &poses_of(fitted)));
+    }
+    for (what, hand, fitted) in [("mean", mean, &with_mean), ("own", own, with_own)] {
         report.push(said_of(what, hand, &names, fitted));
-        let poses: Vec<Pose> = fitted.iter().map(|fit| fit.pose).collect();
+        let poses = poses_of(fitted);
         report.push(table(&format!("refined with the {what} hand"), hand, &poses));
         let mut csv = Vec::new();
         write_poses(&mut csv, &poses, &Dof::ALL)?;
         files::write_whole(&arguments.out.join(format!("poses-{what}.csv")), &csv)?;
         sheet::write_fits(&arguments.out, what, &whole, hand, &rest, &poses)?;
     }
-    report.push(paper::write(&arguments.out, rig, &own, arguments.samples, &whole, progress)?);
+    report.push(paper::write(&arguments.out, rig, own, arguments.samples, &whole, progress)?);
     Ok(report)
+}
+
+/// The hand calibrated and the frames refined with it, round by round, from where the mean hand led. A
+/// finger that the mean hand took for another finds its place with a hand that fits.
+fn own_hand(
+    learnt: &fit::Learnt,
+    starts: &[fit::Start],
+    with_mean: &[Refined],
+) -> Result<Vec<(HandShape, Vec<Refined>)>> {
+    let first = learnt.calibrate(starts, with_mean)?;
+    let fitted = learnt.refine(&first, starts, |k| vec![with_mean[k].pose])?;
+    let mut rounds = vec![(first, fitted)];
+    while let Some((_, before)) = rounds.last().filter(|_| rounds.len() < ROUNDS) {
+        let own = learnt.calibrate(starts, before)?;
+        let from = |k: usize| [vec![before[k].pose], fit::postures(&before[k].pose)].concat();
+        let fitted = learnt.refine(&own, starts, from)?;
+        rounds.push((own, fitted));
+    }
+    Ok(rounds)
+}
+
+fn said_of_round(round: usize, own: &HandShape, fitted: &[Refined]) -> String {
+    let energy: f64 = fitted.iter().map(|fit| fit.energy).sum();
+    let length = fit::length_mm(own);
+    format!("calibrated, round {}: {length:.0} mm long, energy {energy:.0}", round + 1)
 }
 
 /// How much of what was seen a hand covers, frame by frame.
