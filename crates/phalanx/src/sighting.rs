@@ -50,9 +50,10 @@ impl<'a> Sighting<'a> {
         seen.distance(self.across() * seen.length())
     }
 
-    /// How wide the wrist is if it is at a point of the world, mm.
+    /// How wide the wrist is if it is at a point of the world, mm; 0 behind the camera, which sees nothing
+    /// there.
     pub(crate) fn width_mm(&self, wrist: DVec3) -> f64 {
-        let depth = self.camera.extrinsics.to_camera(wrist).z;
+        let depth = self.camera.extrinsics.to_camera(wrist).z.max(0.0);
         self.hand.width * depth / self.camera.intrinsics.fx
     }
 }
