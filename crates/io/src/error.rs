@@ -10,4 +10,48 @@ pub enum Error {
     /// A camera contradicts itself.
     #[error(transparent)]
     Camera(#[from] phalanx_camera::Error),
+    /// A take's header that is none, of another version, or contradicts itself.
+    #[error("take: header: {what}")]
+    TakeHeader {
+        /// What is wrong.
+        what: String,
+    },
+    /// A frame of a take that contradicts itself or the frames before it.
+    #[error("take: frame {frame}: {what}")]
+    TakeFrame {
+        /// The frame's number.
+        frame: u64,
+        /// What is wrong.
+        what: String,
+    },
+    /// A line of a take's file that cannot be read.
+    #[error("take: line {line}: {what}")]
+    TakeLine {
+        /// The line, from 1.
+        line: u64,
+        /// What is wrong.
+        what: String,
+    },
+    /// A column of a take's table that is absent or stands twice.
+    #[error("take: column '{column}' {what}")]
+    TakeColumn {
+        /// The column's name.
+        column: String,
+        /// What is wrong.
+        what: &'static str,
+    },
+    /// An array of a take's archive that is absent, damaged or of another kind.
+    #[error("take: array '{array}': {what}")]
+    TakeArray {
+        /// The array's name.
+        array: String,
+        /// What is wrong.
+        what: String,
+    },
+    /// What the writer reports.
+    #[error("take: it cannot be written: {what}")]
+    Write {
+        /// The writer's own words.
+        what: String,
+    },
 }

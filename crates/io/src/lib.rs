@@ -2,5 +2,6 @@
 
 pub mod calibration;
 mod error;
+pub mod take;
 
 pub use error::{Error, Result};

@@ -1,0 +1,98 @@
+//! Takes to write and read.
+
+use glam::{DAffine3, DMat3, DVec3};
+use phalanx_hand::{Dof, HandShape, Pose, PoseTable, Side};
+use phalanx_io::take::{FrameView, Take, TakeFrame, TakeHeader};
+use proptest::prelude::*;
+
+/// The opening and closing hand of the fixtures at 30 Hz by two cameras; frame 3 is lost, frame 5
+/// doubted, the hand's turn about X not estimated.
+pub(crate) fn open_close(side: Side) -> Take {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/trajectories/open-close.csv");
+    let table = PoseTable::read(std::fs::File::open(file).unwrap()).unwrap();
+    let header = TakeHeader {
+        hand: HandShape { side, ..HandShape::adult() },
+        world_from_hand: DAffine3::from_mat3_translation(
+            DMat3::from_rotation_x(0.4) * DMat3::from_rotation_z(-1.1),
+            DVec3::new(10.0, 250.0, -40.0),
+        ),
+        views: vec!["side".to_owned(), "top".to_owned()],
+        rate_hz: Some(30.0),
+        model: Some("3f6c".to_owned()),
+    };
+    let frames = table.poses.iter().take(40).enumerate().map(|(k, pose)| frame(&header, k, *pose));
+    Take { frames: frames.collect(), header }
+}
+
+fn frame(header: &TakeHeader, k: usize, mut pose: Pose) -> TakeFrame {
+    pose[Dof::ThetaX] = 0.02 * k as f64;
+    pose[Dof::TX] = k as f64;
+    pose[Dof::WristFlexion] = -0.01 * k as f64;
+    let mut std = [Some(0.03); Dof::COUNT];
+    std[Dof::ThetaX.index()] = None;
+    let estimate = (k != 3).then(|| header.estimate(pose, std));
+    let lost = estimate.is_none();
+    TakeFrame {
+        index: k as u64 + 1,
+        time: k as f64 / 30.0,
+        estimate,
+        views: vec![
+            FrameView { used: !lost, overlap: (!lost).then_some(0.93) },
+            FrameView { used: false, overlap: None },
+        ],
+        doubts: match k {
+            3 => vec!["no-hand".to_owned()],
+            5 => vec!["few-views".to_owned(), "low-overlap".to_owned()],
+            _ => vec![],
+        },
+    }
+}
+
+/// Takes of all kinds, within what files hold.
+pub(crate) fn takes() -> impl Strategy<Value = Take> {
+    let name = "[a-zA-Z0-9_ <>\"',.&ü-]{0,12}[a-z]";
+    let name = name.prop_filter("no space at the start", |name: &String| !name.starts_with(' '));
+    let views = prop::collection::btree_set(name.clone(), 0..4);
+    (views, any::<bool>(), prop::option::of(1.0..240.0_f64), prop::option::of("[0-9a-f]{8}"))
+        .prop_flat_map(move |(views, left, rate_hz, model)| {
+            let header = TakeHeader {
+                hand: HandShape {
+                    side: if left { Side::Left } else { Side::Right },
+                    ..HandShape::adult()
+                },
+                world_from_hand: DAffine3::from_translation(DVec3::new(1.5, -2.25, 600.0)),
+                views: views.into_iter().collect(),
+                rate_hz,
+                model,
+            };
+            let frames = prop::collection::vec(frames(header.clone(), name.clone()), 0..6);
+            (Just(header), frames)
+        })
+        .prop_map(|(header, mut frames)| {
+            for (k, frame) in frames.iter_mut().enumerate() {
+                frame.index = 3 * k as u64;
+                frame.time = k as f64 * 0.04 - 1.0;
+            }
+            Take { header, frames }
+        })
+}
+
+fn frames(
+    header: TakeHeader,
+    code: impl Strategy<Value = String>,
+) -> impl Strategy<Value = TakeFrame> {
+    let numbers = prop::array::uniform28(-1.5..1.5_f64);
+    let std = prop::array::uniform28(prop::option::of(0.0..0.5_f64));
+    let view = (any::<bool>(), prop::option::of(0.0..=1.0_f64));
+    let views = prop::collection::vec(view, header.views.len());
+    let doubts = prop::collection::btree_set(code, 0..3);
+    (prop::option::of((numbers, std)), views, doubts).prop_map(move |(estimate, views, doubts)| {
+        TakeFrame {
+            index: 0,
+            time: 0.0,
+            estimate: estimate.map(|(numbers, std)| header.estimate(Pose(numbers), std)),
+            views: views.into_iter().map(|(used, overlap)| FrameView { used, overlap }).collect(),
+            doubts: doubts.into_iter().collect(),
+        }
+    })
+}
