@@ -8,11 +8,11 @@ use anyhow::Result;
 use clap::Args;
 use comfy_table::{Table, presets};
 use faer::Mat;
-use phalanx::{ItemRandom, OrientationRule};
+use phalanx::OrientationRule;
 use phalanx_multiview::Vocabulary;
 use phalanx_rvm::{
     Bridges, Columns, Fit, ForwardSelection, Kernel, MultivariateRvm, Nystrom, Pilot, Ridge, Stop,
-    Sums, Width,
+    Sums, Width, random_subset,
 };
 
 use crate::described::Samples;
@@ -79,17 +79,17 @@ impl Selector {
                 MultivariateRvm { kernel: KERNEL, most: Some(count), ..MultivariateRvm::default() }
                     .fit(x, y)?
             }
-            Self::Nystrom => Nystrom { width: WIDTH, ..Nystrom::default() }.fit(x, y, count)?,
+            Self::Nystrom => {
+                let centres = random_subset(x.ncols(), count, SEED);
+                Nystrom { width: WIDTH, ..Nystrom::default() }.fit_on(x, y, &centres)?
+            }
         })
     }
 }
 
 /// Ridge regression on the Gaussians of randomly chosen samples.
 fn on_random_samples(samples: &Samples, count: usize) -> Result<Fit> {
-    let drawn = |i: usize| (ItemRandom::new(SEED, i as u64).uniform(), i);
-    let mut order: Vec<(f64, usize)> = (0..samples.x.ncols()).map(drawn).collect();
-    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let chosen: Vec<usize> = order.into_iter().take(count).map(|(_, i)| i).collect();
+    let chosen = random_subset(samples.x.ncols(), count, SEED);
     let of = |all: &Mat<f64>| Mat::from_fn(all.nrows(), count, |row, k| all[(row, chosen[k])]);
     let (pilot_x, pilot_y) = (of(&samples.x), of(&samples.y));
     let pilot = Pilot { x: pilot_x.as_ref(), y: pilot_y.as_ref(), samples: &chosen };

@@ -62,12 +62,12 @@ pub(crate) fn count(asked: usize, available: usize) -> Result<()> {
     if (1..=available).contains(&asked) { Ok(()) } else { Err(Error::Count { asked, available }) }
 }
 
-/// Refuses indices of inputs that are not ascending or not there.
-pub(crate) fn features(features: &[usize], inputs: usize) -> Result<()> {
-    let ascends = |place: usize| place == 0 || features[place - 1] < features[place];
-    for (place, &feature) in features.iter().enumerate() {
-        if feature >= inputs || !ascends(place) {
-            return Err(Error::Feature { feature, inputs });
+/// Refuses indices that are not ascending or not below `available`.
+pub(crate) fn indices(what: &'static str, indices: &[usize], available: usize) -> Result<()> {
+    let ascends = |place: usize| place == 0 || indices[place - 1] < indices[place];
+    for (place, &index) in indices.iter().enumerate() {
+        if index >= available || !ascends(place) {
+            return Err(Error::Index { what, index, available });
         }
     }
     Ok(())

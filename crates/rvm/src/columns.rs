@@ -78,7 +78,7 @@ impl Columns {
     /// Columns over the inputs in `features` (ascending) that vary.
     pub fn over(pilot: &Pilot<'_>, kernel: Kernel, features: &[usize]) -> Result<Self> {
         let problem = Problem::new(pilot.x, pilot.y)?;
-        check::features(features, pilot.x.nrows())?;
+        check::indices("features", features, pilot.x.nrows())?;
         let varying = problem.features();
         let features = varying.into_iter().filter(|f| features.binary_search(f).is_ok()).collect();
         Self::on_pilot(&problem, features, kernel, pilot)
@@ -289,9 +289,14 @@ fn near(
     for column in 0..samples.ncols() {
         for &row in rows {
             let value = samples[(row, column)];
-            if pilot.deviations(row, value) > FURTHEST {
-                return Err(Error::FarFromPilot { what, row, column, value });
+            if pilot.deviations(row, value) <= FURTHEST {
+                continue;
             }
+            return Err(if pilot.scale()[row] > 0.0 {
+                Error::FarFromPilot { what, row, column, value }
+            } else {
+                Error::ConstantInPilot { what, row, column, value }
+            });
         }
     }
     Ok(())

@@ -67,20 +67,37 @@ pub enum Error {
         /// Most that are accepted.
         limit: usize,
     },
-    /// Indices of inputs must be ascending and name inputs that there are.
-    #[error("feature {feature} does not ascend or is not one of {inputs} inputs")]
-    Feature {
+    /// Indices of inputs or samples must be ascending and name what there is.
+    #[error("{what}: index {index} does not ascend or is not below {available}")]
+    Index {
+        /// Which list.
+        what: &'static str,
         /// The first index at fault.
-        feature: usize,
-        /// Inputs there are.
-        inputs: usize,
+        index: usize,
+        /// How many there are to choose from.
+        available: usize,
     },
     /// A streamed value lies absurdly far from where the pilot's samples do.
     #[error(
         "{what}[{row}, {column}] is {value}, more than 65536 of the pilot's standard deviations \
-         from its mean"
+         from its mean; draw the pilot at random from all samples, or remove the outlier"
     )]
     FarFromPilot {
+        /// Which matrix.
+        what: &'static str,
+        /// Row of the entry.
+        row: usize,
+        /// Column (sample) of the entry.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// A target that is constant over the pilot varies in the stream, so that its scale is unknown.
+    #[error(
+        "{what}[{row}, {column}] is {value}, but row {row} is constant over the pilot; draw the \
+         pilot at random from all samples"
+    )]
+    ConstantInPilot {
         /// Which matrix.
         what: &'static str,
         /// Row of the entry.

@@ -8,7 +8,12 @@ use crate::problem::Problem;
 use crate::sums::Sums;
 use crate::{
     Block, Columns, Error, Kernel, Model, Nystrom, Projection, Result, Standardiser, check, linalg,
+    random_subset,
 };
+
+/// Seeds of the choice of centres, and of the samples whose gradients are averaged.
+const CENTRE_SEED: u64 = 0;
+const GRADIENT_SEED: u64 = 1;
 
 /// Learns distances between inputs from the gradients of a first regression: the expected gradient
 /// outer product (Trivedi, Wang, Kpotufe and Shakhnarovich 2014; Wu, Guinney, Maggioni and Mukherjee
@@ -41,7 +46,7 @@ use crate::{
 /// // Of six inputs one number is left, and from it the target follows.
 /// let z = metric.projection.apply(x.as_ref())?;
 /// assert_eq!(z.nrows(), 1);
-/// let model = nystrom.fit(z.as_ref(), y.as_ref(), 50)?.model;
+/// let model = nystrom.fit(z.as_ref(), y.as_ref())?.model;
 /// let all = Projected::from_parts(metric, vec![model])?;
 /// assert_eq!((all.inputs(), all.outputs()), (6, 1));
 /// # Ok(())
@@ -151,8 +156,7 @@ impl GradientMetric {
     fn gradients(&self, z: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Vec<Mat<f64>>> {
         let model = self.model(z, y)?;
         let scale = Standardiser::fit(y)?;
-        let samples = self.gradients.min(z.ncols());
-        let spaced: Vec<usize> = (0..samples).map(|i| i * z.ncols() / samples).collect();
+        let samples = random_subset(z.ncols(), self.gradients, GRADIENT_SEED);
         let gradient = |&sample: &usize| {
             let mut gradient = model.gradient(z.col(sample));
             for (row, &scale) in scale.scale().iter().enumerate() {
@@ -161,17 +165,16 @@ impl GradientMetric {
             }
             gradient
         };
-        Ok(spaced.par_iter().map(gradient).collect())
+        Ok(samples.par_iter().map(gradient).collect())
     }
 
     /// The regression on inputs that keep their proportions.
     fn model(&self, z: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Model> {
         let problem = Problem::in_proportion(z, y)?;
-        let centres = self.centres.min(z.ncols());
-        check::count(centres, z.ncols())?;
-        let spaced: Vec<usize> = (0..centres).map(|c| c * z.ncols() / centres).collect();
+        let centres = random_subset(z.ncols(), self.centres, CENTRE_SEED);
+        check::count(centres.len(), z.ncols())?;
         let kernel = Kernel::Gaussian(self.regression.width);
-        let columns = Columns::of(&problem, problem.features(), kernel, &spaced)?.centred();
+        let columns = Columns::of(&problem, problem.features(), kernel, &centres)?.centred();
         let mut sums = Sums::new(&columns);
         sums.add(&columns, z, y)?;
         Ok(self.regression.fit_sums(&columns, &sums)?.model)

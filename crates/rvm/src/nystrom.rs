@@ -7,7 +7,9 @@ use crate::model::{Factor, Posterior};
 use crate::penalised::{self, Penalised};
 use crate::problem::Problem;
 use crate::sums::{Summed, Sums};
-use crate::{Columns, Error, Fit, Kernel, Model, Report, Result, Trace, Width, check, linalg};
+use crate::{
+    Columns, Error, Fit, Kernel, Model, Report, Result, Trace, Width, check, linalg, random_subset,
+};
 
 /// Added to the kernel's diagonal of ones. Where the centres' Gaussians depend on each other,
 /// whitening divides the rounding of G by this: a smaller one leaves small λ unsolvable for many
@@ -16,6 +18,8 @@ use crate::{Columns, Error, Fit, Kernel, Model, Report, Result, Trace, Width, ch
 const JITTER: f64 = 1e-6;
 /// Samples that `fit` adds at a time.
 const BATCH: usize = 4096;
+/// Seed of the choice of centres in `fit`.
+const SEED: u64 = 0;
 
 /// How strongly a Nyström regression is penalised.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,12 +63,13 @@ pub enum Deviation {
 /// Time grows with n·p² for the sums and p³ for each λ; memory with p².
 ///
 /// ```
-/// use phalanx_rvm::{Nystrom, faer::Mat};
+/// use phalanx_rvm::{Nystrom, faer::Mat, random_subset};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(1, 500, |_, t| t as f64 / 60.0);
 /// let y = Mat::from_fn(1, 500, |_, t| x[(0, t)].sin());
-/// let model = Nystrom::default().fit(x.as_ref(), y.as_ref(), 40)?.model; // Gaussians on 40 samples
+/// let centres = random_subset(500, 40, 1); // Gaussians on 40 of the samples
+/// let model = Nystrom::default().fit_on(x.as_ref(), y.as_ref(), &centres)?.model;
 /// let (mean, std) = model.predict_with_std(x.as_ref())?;
 /// assert!((0..500).all(|t| (mean[(0, t)] - y[(0, t)]).abs() < 0.01 && std[(0, t)] > 0.0));
 /// # Ok(())
@@ -95,15 +100,25 @@ impl Default for Nystrom {
 }
 
 impl Nystrom {
-    /// Fits X (K×I) to Y (m×I) with Gaussians on `centres` of the samples, evenly spaced.
-    pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>, centres: usize) -> Result<Fit> {
+    /// Most centres that [`fit`](Self::fit) takes: the fit of as many takes a second or two.
+    pub const CENTRES: usize = 1000;
+
+    /// Fits X (K×I) to Y (m×I) with Gaussians on all samples or, of more than
+    /// [`CENTRES`](Self::CENTRES), on as many that are drawn at random by a fixed seed.
+    pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
+        self.fit_on(x, y, &random_subset(x.ncols(), Self::CENTRES, SEED))
+    }
+
+    /// Fits X (K×I) to Y (m×I) with Gaussians on the samples of these indices, ascending. Choose them
+    /// by [`random_subset`]: every n-th of an ordered list can miss most of it.
+    pub fn fit_on(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>, centres: &[usize]) -> Result<Fit> {
         self.grid()?;
         let problem = Problem::new(x, y)?;
         let samples = x.ncols();
-        check::count(centres, samples)?;
-        let spaced: Vec<usize> = (0..centres).map(|c| c * samples / centres).collect();
+        check::count(centres.len(), samples)?;
+        check::indices("centres", centres, samples)?;
         let kernel = Kernel::Gaussian(self.width);
-        let columns = Columns::of(&problem, problem.features(), kernel, &spaced)?.centred();
+        let columns = Columns::of(&problem, problem.features(), kernel, centres)?.centred();
         drop(problem);
         let mut sums = Sums::new(&columns);
         for start in (0..samples).step_by(BATCH) {

@@ -17,6 +17,7 @@ pub use on_components::NetworkOnComponents;
 use crate::perceptron::adam::Adam;
 use crate::perceptron::layers::{Layers, LeftOut, Pass};
 use crate::perceptron::samples::{Samples, Scaling, check_inputs};
+use crate::permutation::shuffle;
 use crate::{Error, Projection, Report, Result, Standardiser, Trace, check};
 
 /// A multilayer perceptron: layers of x ↦ s(Wx + b), s(z) = z/(1 + e⁻ᶻ) (Elfwing, Uchibe and Doya
@@ -27,7 +28,7 @@ use crate::{Error, Projection, Report, Result, Standardiser, Trace, check};
 /// over the others (Smith and Topin 2019), with dropout (Srivastava et al. 2014). Inputs keep their
 /// proportions: put them on one scale first, as [`Components`](crate::Components) does.
 ///
-/// Every 16th sample is not learnt from; the standard deviations are the root mean square errors of
+/// One sample in 16, drawn at random, is not learnt from; the standard deviations are the root mean square errors of
 /// these, one for each target, and the trace holds their mean absolute error, in standardised units,
 /// after each epoch.
 ///
@@ -62,7 +63,7 @@ pub struct Perceptron {
     pub rate: f64,
     /// The share of each layer that is left out at each step, from 0 to below 1.
     pub dropout: f64,
-    /// Of the first weights, the order of samples and what is left out.
+    /// Of the first weights, the samples held out, the order of samples and what is left out.
     pub seed: u64,
 }
 
@@ -100,7 +101,7 @@ impl Perceptron {
         let targets = Standardiser::fit(y)?;
         check::length("columns (samples) of y", x.ncols(), y.ncols())?;
         let scaling = Scaling::of(x);
-        let samples = Samples::new(x, y, &scaling, &targets);
+        let samples = Samples::new(x, y, &scaling, &targets, self.seed);
         let mut random = Pcg64Mcg::seed_from_u64(self.seed);
         let mut layers = Layers::new(self.widths(x.nrows(), &samples), &mut random);
         let mut errors = Vec::with_capacity(self.epochs);
@@ -200,15 +201,6 @@ fn one_cycle(step: usize, steps: usize) -> f64 {
         between(FIRST, 1.0, at / RISE)
     } else {
         between(1.0, 0.0, (at - RISE) / (1.0 - RISE))
-    }
-}
-
-/// A random order (Fisher and Yates).
-fn shuffle(order: &mut [usize], random: &mut Pcg64Mcg) {
-    for last in (1..order.len()).rev() {
-        // The bias of so short a range in 64 bits is nothing.
-        let other = (u128::from(random.next_u64()) * (last as u128 + 1)) >> 64;
-        order.swap(last, other as usize);
     }
 }
 

@@ -4,7 +4,7 @@ use faer::{ColRef, Mat, MatRef};
 use rayon::prelude::*;
 
 use crate::perceptron::layers::{Layers, Pass};
-use crate::{Error, Result, Standardiser};
+use crate::{Error, Result, Standardiser, random_subset};
 
 /// Of so many samples one is held out: it tells how far predictions are off.
 const HELD_OUT: usize = 16;
@@ -65,11 +65,12 @@ impl<'a> Samples<'a> {
         y: MatRef<'_, f64>,
         scaling: &'a Scaling,
         targets: &Standardiser,
+        seed: u64,
     ) -> Self {
         let varying = targets.varying();
         let target = |j: usize, i: usize| targets.scaled(varying[j], y[(varying[j], i)]) as f32;
-        let is_held_out = |i: &usize| i % HELD_OUT == HELD_OUT - 1;
-        let (held_out, learnt_from) = (0..x.ncols()).partition(is_held_out);
+        let held_out = random_subset(x.ncols(), x.ncols() / HELD_OUT, seed);
+        let learnt_from = (0..x.ncols()).filter(|i| held_out.binary_search(i).is_err()).collect();
         Self {
             x,
             scaling,

@@ -122,7 +122,7 @@ fn hyper_parameters_out_of_range_are_named() {
         let lambda = Lambda::LeaveOneOut(vec![1.0, bad]);
         assert_eq!(name(KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y)), "lambda");
         let penalty = Penalty::CrossValidated(vec![1.0, bad]);
-        assert_eq!(name(Nystrom { penalty, ..Nystrom::default() }.fit(x, y, 3)), "lambda");
+        assert_eq!(name(Nystrom { penalty, ..Nystrom::default() }.fit(x, y)), "lambda");
         let kernel = Kernel::Gaussian(Width::Scatter(bad));
         assert_eq!(name(Bridges { kernel, ..bridges }.fit(x, y)), "c");
     }
@@ -139,8 +139,12 @@ fn hyper_parameters_out_of_range_are_named() {
         let count = Error::Count { asked, available: 12 };
         let stop = Stop::Count(asked);
         assert_eq!(Bridges { stop, ..bridges }.fit(x, y).unwrap_err(), count);
-        assert_eq!(Nystrom::default().fit(x, y, asked).unwrap_err(), count);
         assert_eq!(ForwardSelection { count: asked, ..forward }.fit(x, y).unwrap_err(), count);
+    }
+    let on = |centres: &[usize]| Nystrom::default().fit_on(x, y, centres).unwrap_err();
+    assert_eq!(on(&[]), Error::Count { asked: 0, available: 12 });
+    for (centres, index) in [([3, 3], 3), ([4, 2], 2), ([2, 12], 12)] {
+        assert_eq!(on(&centres), Error::Index { what: "centres", index, available: 12 });
     }
     let cascade = Cascade { features: Stop::Count(5), ..Cascade::default() };
     assert_eq!(cascade.fit(x, y).unwrap_err(), Error::Count { asked: 5, available: 4 });

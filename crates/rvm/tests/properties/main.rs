@@ -16,6 +16,7 @@ mod nystrom;
 mod parts;
 mod perceptron;
 mod problems;
+mod sampling;
 mod streams;
 mod tipping;
 mod torture;

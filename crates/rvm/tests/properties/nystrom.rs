@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Kernel, KernelRidge, Lambda, Nystrom, Penalty, Pilot, Standardiser, Sums, Width,
+    Kernel, KernelRidge, Lambda, Nystrom, Penalty, Pilot, Standardiser, Sums, Width, random_subset,
 };
 use proptest::prelude::*;
 
@@ -53,7 +53,7 @@ proptest! {
         let (x, y) = smooth(seed, 3, 2, 40);
         let dense = KernelRidge { width: Width::Beta(BETA), lambda: Lambda::Given(lambda) };
         let expected = dense.fit(x.as_ref(), y.as_ref())?.model.predict(x.as_ref())?;
-        let fit = nystrom(Penalty::Given(lambda)).fit(x.as_ref(), y.as_ref(), 40)?;
+        let fit = nystrom(Penalty::Given(lambda)).fit(x.as_ref(), y.as_ref())?;
         let difference = fit.model.predict(x.as_ref())? - expected;
         let targets = centred(y);
         for j in 0..2 {
@@ -67,10 +67,10 @@ proptest! {
         let (n, p) = (50, 10);
         let (x, y) = smooth(seed, 3, 2, n);
         let (new, _) = smooth(seed ^ 7, 3, 1, 10);
-        let spaced: Vec<usize> = (0..p).map(|c| c * n / p).collect();
+        let chosen = random_subset(n, p, seed);
         let (inputs, outputs) = (Standardiser::fit(x.as_ref())?, Standardiser::fit(y.as_ref())?);
         let (z, t) = (inputs.apply(x.as_ref())?, outputs.apply(y.as_ref())?);
-        let centres = columns(z.as_ref(), &spaced);
+        let centres = columns(z.as_ref(), &chosen);
         let raw = kernel(centres.as_ref(), z.as_ref());
         let phi = centred(raw.clone());
         let between = penalty(centres.as_ref());
@@ -82,9 +82,9 @@ proptest! {
             new_phi.row_mut(i).iter_mut().for_each(|v| *v -= mean);
         }
         let expected = outputs.invert((weights.transpose() * &new_phi).as_ref())?;
-        let model = nystrom(Penalty::Given(lambda)).fit(x.as_ref(), y.as_ref(), p)?.model;
+        let model = nystrom(Penalty::Given(lambda)).fit_on(x.as_ref(), y.as_ref(), &chosen)?.model;
         let (mean, std) = model.predict_with_std(new.as_ref())?;
-        prop_assert_eq!(model.kept_samples(), spaced);
+        prop_assert_eq!(model.kept_samples(), chosen);
         prop_assert!(close(mean.as_ref(), expected.as_ref(), 1e-5));
         let spread = new_phi.transpose() * solve(system.as_ref(), new_phi.as_ref());
         let used = hat(&phi, &between, lambda).diagonal().column_vector().sum();
@@ -103,10 +103,10 @@ proptest! {
     fn the_penalty_has_the_least_cross_validation_error(seed in any::<u64>()) {
         let (n, p, m) = (50, 10, 2);
         let (x, y) = smooth(seed, 3, m, n);
-        let spaced: Vec<usize> = (0..p).map(|c| c * n / p).collect();
+        let chosen = random_subset(n, p, seed);
         let z = Standardiser::fit(x.as_ref())?.apply(x.as_ref())?;
         let t = Standardiser::fit(y.as_ref())?.apply(y.as_ref())?;
-        let centres = columns(z.as_ref(), &spaced);
+        let centres = columns(z.as_ref(), &chosen);
         let phi = centred(kernel(centres.as_ref(), z.as_ref()));
         let between = penalty(centres.as_ref());
         let grid = vec![1e-3, 0.1, 3.0];
@@ -117,23 +117,24 @@ proptest! {
             let leverage = (hat.diagonal().column_vector().sum() + 1.0) / n as f64;
             residuals.squared_norm_l2() / ((1.0 - leverage).powi(2) * (n * m) as f64)
         }).collect::<Vec<f64>>();
-        let fit = nystrom(Penalty::CrossValidated(grid.clone())).fit(x.as_ref(), y.as_ref(), p)?;
+        let fit = nystrom(Penalty::CrossValidated(grid.clone())).fit_on(x.as_ref(), y.as_ref(), &chosen)?;
         for (found, expected) in fit.report.traces[0].objective.iter().zip(&expected) {
             prop_assert!((found - expected).abs() < 1e-5 * expected, "{found} {expected}");
         }
         let best = (0..grid.len()).min_by(|&a, &b| expected[a].total_cmp(&expected[b]));
         prop_assert_eq!(fit.report.penalty, best.map(|b| grid[b]));
         let given = nystrom(Penalty::Given(fit.report.penalty.unwrap()));
-        prop_assert_eq!(given.fit(x.as_ref(), y.as_ref(), p)?.model, fit.model);
+        prop_assert_eq!(given.fit_on(x.as_ref(), y.as_ref(), &chosen)?.model, fit.model);
     }
 }
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let (x, y) = smooth(6, 6, 3, 900);
+    let centres = random_subset(900, 300, 1);
     let fits = [1, 2, 8].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| Nystrom::default().fit(x.as_ref(), y.as_ref(), 300)).unwrap()
+        pool.install(|| Nystrom::default().fit_on(x.as_ref(), y.as_ref(), &centres)).unwrap()
     });
     assert_eq!(fits[0], fits[1]);
     assert_eq!(fits[0], fits[2]);
@@ -143,7 +144,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 fn inputs_that_do_not_vary_leave_the_mean() {
     let (_, y) = smooth(2, 3, 2, 30);
     let x = Mat::full(3, 30, 4.0);
-    let model = Nystrom::default().fit(x.as_ref(), y.as_ref(), 10).unwrap().model;
+    let model = Nystrom::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
     assert!(model.kept_samples().is_empty());
     let outputs = Standardiser::fit(y.as_ref()).unwrap();
     let mean = model.predict(x.as_ref().subcols(0, 1)).unwrap();
@@ -166,6 +167,6 @@ fn repeated_centres_are_solved() {
     let mut sums = Sums::new(&doubled);
     sums.add(&doubled, x.as_ref(), y.as_ref()).unwrap();
     let found = fitter.fit_sums(&doubled, &sums).unwrap().model.predict(x.as_ref()).unwrap();
-    let once = fitter.fit(x.as_ref(), y.as_ref(), 30).unwrap().model.predict(x.as_ref()).unwrap();
+    let once = fitter.fit(x.as_ref(), y.as_ref()).unwrap().model.predict(x.as_ref()).unwrap();
     assert!(close(found.as_ref(), once.as_ref(), 1e-4));
 }

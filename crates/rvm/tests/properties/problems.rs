@@ -27,7 +27,7 @@ pub(crate) const FITTERS: [(&str, Fitter); 13] = [
     ("multivariate RVM, Gaussian", |x, y| MultivariateRvm::default().fit(x, y)),
     ("learnt widths", |x, y| LearntWidths { rounds: 3, ..LearntWidths::default() }.fit(x, y)),
     ("kernel ridge", |x, y| KernelRidge::default().fit(x, y)),
-    ("Nyström", |x, y| Nystrom::default().fit(x, y, x.ncols())),
+    ("Nyström", |x, y| Nystrom::default().fit(x, y)),
     ("forward", |x, y| {
         ForwardSelection { kernel: GAUSSIAN, count: 1, ..ForwardSelection::default() }.fit(x, y)
     }),
