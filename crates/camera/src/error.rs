@@ -33,9 +33,10 @@ pub enum Error {
         /// The camera.
         camera: String,
     },
-    /// Distortion coefficients of another lens model.
+    /// A number of distortion coefficients that no lens model has.
     #[error(
-        "camera `{camera}`: {found} distortion_coefficients; k1 k2 p1 p2 and perhaps k3 are known"
+        "camera `{camera}`: {found} distortion coefficients: OpenCV's are 4, 5, 8, 12 or 14, and a \
+         fisheye's 4"
     )]
     DistortionCount {
         /// The camera.
@@ -126,13 +127,17 @@ pub enum Error {
         /// The point, px.
         point: DVec2,
     },
-    /// The distortion maps two directions to one pixel well within the image. That it does so in
-    /// the corners, where calibrations are extrapolated, is allowed; no direction is known there.
-    #[error("camera `{camera}`: distortion folds over before it reaches {pixel} px")]
+    /// The distortion maps two directions to one pixel where the hand works. That it does so elsewhere
+    /// in the image, where calibrations are extrapolated, is allowed; no direction is known there.
+    #[error(
+        "camera `{camera}`: its distortion folds over at {:.0}, {:.0} px, where the volume is seen: \
+         calibrate with the board in all of the picture, or make the volume's size_mm smaller",
+        pixel.x, pixel.y
+    )]
     Folding {
         /// The camera.
         camera: String,
-        /// The middle of a side of the image that it does not reach, px.
+        /// Where it folds over, px.
         pixel: DVec2,
     },
     /// Neither, both or parts of the two ways to say where a camera stands.

@@ -3,12 +3,15 @@
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::{Camera, Distortion, Error, Extrinsics, Intrinsics, Result, Rig, Volume};
+use crate::{
+    Camera, Distortion, Error, Extrinsics, Fisheye, Intrinsics, Lens, Result, Rig, Volume,
+};
 
 const HEADER: &str = "\
 # Lengths in mm. Pixel centres are at integer + 0.5: an image spans 0 to width and 0 to height,
 # so add 0.5 to OpenCV's principal point. Camera axes as in OpenCV: x right, y down, z forward,
-# x_cam = rotation * x_world + translation_mm; distortion is k1, k2, p1, p2, k3.
+# x_cam = rotation * x_world + translation_mm; distortion is OpenCV's: k1, k2, p1, p2, k3, and where
+# needed k4, k5, k6, s1, s2, s3, s4, tau_x, tau_y; with lens = \"fisheye\", k1, k2, k3, k4.
 
 ";
 
@@ -37,7 +40,8 @@ struct CameraFile {
     height: u32,
     focal_px: Focal,
     principal_point_px: Option<DVec2>,
-    distortion: Option<[f64; 5]>,
+    lens: Option<LensModel>,
+    distortion: Option<Vec<f64>>,
     position_mm: Option<DVec3>,
     look_at_mm: Option<DVec3>,
     up: Option<DVec3>,
@@ -53,13 +57,20 @@ enum Focal {
     Each([f64; 2]),
 }
 
+#[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum LensModel {
+    Perspective,
+    Fisheye,
+}
+
 impl Rig {
     /// Reads and validates a rig file.
     ///
     /// A `[volume]` has `center_mm`, `size_mm`, `forearm` and `up`. Each `[[camera]]` has
     /// `name`, `width`, `height`, `focal_px` (a number or `[fx, fy]`), optionally
-    /// `principal_point_px` (default: the middle) and `distortion` (`[k1, k2, p1, p2, k3]`),
-    /// and either `position_mm`, `look_at_mm` and `up`, or `rotation` (three rows) and
+    /// `principal_point_px` (default: the middle), `lens` (`"perspective"`, or `"fisheye"`) and
+    /// `distortion` (OpenCV's 4, 5, 8, 12 or 14 coefficients, or a fisheye's 4), and either `position_mm`, `look_at_mm` and `up`, or `rotation` (three rows) and
     /// `translation_mm`. Pixel centres are at integer + 0.5.
     pub fn from_toml(text: &str) -> Result<Self> {
         let file: RigFile =
@@ -95,16 +106,9 @@ impl CameraFile {
         };
         let middle = DVec2::new(f64::from(self.width), f64::from(self.height)) / 2.0;
         let c = self.principal_point_px.unwrap_or(middle);
-        let [k1, k2, p1, p2, k3] = self.distortion.unwrap_or_default();
-        let intrinsics = Intrinsics {
-            width: self.width,
-            height: self.height,
-            fx,
-            fy,
-            cx: c.x,
-            cy: c.y,
-            distortion: Distortion { k1, k2, p1, p2, k3 },
-        };
+        let lens = lens(&self.name, self.lens, &self.distortion.unwrap_or_default())?;
+        let intrinsics =
+            Intrinsics { width: self.width, height: self.height, fx, fy, cx: c.x, cy: c.y, lens };
         let looking = (self.position_mm, self.look_at_mm, self.up);
         match (looking, (self.rotation, self.translation_mm)) {
             ((Some(position), Some(target), Some(up)), (None, None)) => {
@@ -120,15 +124,15 @@ impl CameraFile {
     }
 
     fn from_camera(camera: &Camera) -> Self {
-        let Intrinsics { width, height, fx, fy, cx, cy, distortion } = camera.intrinsics;
-        let Distortion { k1, k2, p1, p2, k3 } = distortion;
+        let Intrinsics { width, height, fx, fy, cx, cy, lens } = camera.intrinsics;
         Self {
             name: camera.name.clone(),
             width,
             height,
             focal_px: if fx == fy { Focal::Same(fx) } else { Focal::Each([fx, fy]) },
             principal_point_px: Some(DVec2::new(cx, cy)),
-            distortion: (!distortion.is_none()).then_some([k1, k2, p1, p2, k3]),
+            lens: matches!(lens, Lens::Fisheye(_)).then_some(LensModel::Fisheye),
+            distortion: (!lens.is_perfect()).then(|| lens.coefficients()),
             position_mm: None,
             look_at_mm: None,
             up: None,
@@ -136,4 +140,14 @@ impl CameraFile {
             translation_mm: Some(camera.extrinsics.translation),
         }
     }
+}
+
+/// The lens of these coefficients.
+fn lens(camera: &str, model: Option<LensModel>, coefficients: &[f64]) -> Result<Lens> {
+    let lens = match model.unwrap_or(LensModel::Perspective) {
+        LensModel::Perspective => Distortion::from_coefficients(coefficients).map(Lens::from),
+        LensModel::Fisheye => Fisheye::from_coefficients(coefficients).map(Lens::from),
+    };
+    let found = coefficients.len();
+    lens.ok_or_else(|| Error::DistortionCount { camera: camera.to_owned(), found })
 }

@@ -3,9 +3,9 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::{Distortion, Error, Result};
+use crate::{Error, Lens, Result};
 
-/// A pinhole camera's inside, in pixels, with pixel centres at integer + 0.5: the image spans
+/// A camera's inside, in pixels, with pixel centres at integer + 0.5: the image spans
 /// 0 to `width` and 0 to `height`, x to the right and y down.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Intrinsics {
@@ -22,7 +22,7 @@ pub struct Intrinsics {
     /// Principal point's y, px.
     pub cy: f64,
     /// The lens.
-    pub distortion: Distortion,
+    pub lens: Lens,
 }
 
 impl Intrinsics {
@@ -41,7 +41,7 @@ impl Intrinsics {
             fy: focal,
             cx: f64::from(width) / 2.0,
             cy: f64::from(height) / 2.0,
-            distortion: Distortion::NONE,
+            lens: Lens::PERFECT,
         }
     }
 
@@ -57,17 +57,17 @@ impl Intrinsics {
     /// assert!((pixel - DVec2::new(86.5, 45.0)).length() < 1e-9);
     /// ```
     pub fn to_pixel(&self, normalised: DVec2) -> Option<DVec2> {
-        if self.distortion.is_none() {
+        if self.lens.is_perfect() {
             return normalised.is_finite().then(|| self.scaled(normalised));
         }
-        (normalised.is_finite() && self.distortion.is_one_to_one_at(normalised))
-            .then(|| self.scaled(self.distortion.distort(normalised)))
+        (normalised.is_finite() && self.lens.is_one_to_one_at(normalised))
+            .then(|| self.scaled(self.lens.distort(normalised)))
     }
 
     /// The direction (x/z, y/z) in the camera's frame that a pixel looks in; `None` where the
     /// lens maps none to it.
     pub fn to_normalised(&self, pixel: DVec2) -> Option<DVec2> {
-        self.distortion.undistort(self.unscaled(pixel))
+        self.lens.undistort(self.unscaled(pixel))
     }
 
     /// From a pixel of [`undistorted`](Self::undistorted) to this camera's pixel.
@@ -81,8 +81,8 @@ impl Intrinsics {
     /// use glam::DVec2;
     /// use phalanx_camera::{Distortion, Intrinsics};
     ///
-    /// let lens = Distortion { k1: -0.3, ..Distortion::NONE };
-    /// let camera = Intrinsics { distortion: lens, ..Intrinsics::pinhole(120, 90, 265.0) };
+    /// let lens = Distortion { k1: -0.3, ..Distortion::NONE }.into();
+    /// let camera = Intrinsics { lens, ..Intrinsics::pinhole(120, 90, 265.0) };
     /// let corner = DVec2::new(119.5, 0.5);
     /// let straight = camera.undistort(corner).expect("short of the fold");
     /// assert!(straight.x > corner.x && straight.y < corner.y); // it was pulled in
@@ -95,7 +95,7 @@ impl Intrinsics {
     /// The same camera with a perfect lens.
     #[must_use]
     pub fn undistorted(&self) -> Self {
-        Self { distortion: Distortion::NONE, ..*self }
+        Self { lens: Lens::PERFECT, ..*self }
     }
 
     /// The camera of a window of the image: `width`×`height` pixels from column `x`, row `y`.
@@ -155,12 +155,21 @@ impl Intrinsics {
             && (0.0..=f64::from(self.height)).contains(&pixel.y)
     }
 
+    /// Where the lens folds over in the direction of a point of the normalised plane that lies beyond
+    /// the fold, if that is within the image.
+    pub(crate) fn fold_before(&self, normalised: DVec2) -> Option<DVec2> {
+        if self.lens.is_one_to_one_at(normalised) {
+            return None;
+        }
+        let fold = self.scaled(self.lens.distort(self.lens.short_of_fold(normalised)));
+        self.contains(fold).then_some(fold)
+    }
+
     /// Checks every field on behalf of the camera of this name.
     pub(crate) fn validate(&self, camera: &str) -> Result<()> {
         let camera = || camera.to_owned();
         let Self { width, height, fx, fy, .. } = *self;
-        let Distortion { k1, k2, p1, p2, k3 } = self.distortion;
-        if ![k1, k2, p1, p2, k3].iter().all(|k| k.is_finite()) {
+        if !self.lens.is_valid() {
             return Err(Error::NotFinite { camera: camera(), field: "distortion" });
         }
         if ![width, height].iter().all(|side| (1..=Self::MAX_SIDE).contains(side)) {
@@ -172,13 +181,7 @@ impl Intrinsics {
         if ![self.cx, self.cy].iter().all(|c| c.abs() <= Self::MAX_FOCAL) {
             return Err(Error::NotFinite { camera: camera(), field: "principal_point_px" });
         }
-        let (w, h) = (f64::from(width), f64::from(height));
-        let middles = [(w / 2.0, 0.0), (w, h / 2.0), (w / 2.0, h), (0.0, h / 2.0)];
-        let unreached = |&pixel: &DVec2| self.to_normalised(pixel).is_none();
-        match middles.map(DVec2::from).into_iter().find(unreached) {
-            Some(pixel) => Err(Error::Folding { camera: camera(), pixel }),
-            None => Ok(()),
-        }
+        Ok(())
     }
 
     /// From the normalised plane to pixels, leaving out the lens.

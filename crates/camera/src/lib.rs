@@ -1,11 +1,11 @@
 #![doc = include_str!("../README.md")]
 
 mod camera;
-mod distortion;
 mod error;
 mod extrinsics;
 mod file;
 mod intrinsics;
+mod lens;
 mod opencv;
 mod rig;
 mod triangulate;
@@ -13,10 +13,10 @@ mod virtual_camera;
 mod volume;
 
 pub use camera::{Camera, Ray};
-pub use distortion::Distortion;
 pub use error::{Error, Result};
 pub use extrinsics::Extrinsics;
 pub use intrinsics::Intrinsics;
+pub use lens::{Distortion, Fisheye, Lens};
 pub use opencv::cameras_from_opencv_json;
 pub use rig::Rig;
 pub use triangulate::{Triangulation, triangulate};

@@ -26,7 +26,7 @@ struct Entry {
 /// Reads a calibration in OpenCV's conventions from JSON.
 ///
 /// Its `cameras` have `name`, `width` and `height`, `camera_matrix` (three rows),
-/// `distortion_coefficients` (none, or k1 k2 p1 p2 and perhaps k3), `rotation` (three rows) and
+/// `distortion_coefficients` (OpenCV's 0, 4, 5, 8, 12 or 14), `rotation` (three rows) and
 /// `translation`, with x_cam = R x_world + t. Lengths are in units of `unit_mm`, such as the
 /// squares of a chessboard. Half a pixel is added to the principal point, since OpenCV counts
 /// from the centre of the first pixel.
@@ -66,21 +66,17 @@ impl Entry {
         if skew != 0.0 || zero != 0.0 || last != [0.0, 0.0, 1.0] {
             return Err(Error::CameraMatrix { camera: self.name });
         }
-        let distortion = match self.distortion_coefficients[..] {
-            [] => Distortion::NONE,
-            [k1, k2, p1, p2] => Distortion { k1, k2, p1, p2, k3: 0.0 },
-            [k1, k2, p1, p2, k3] => Distortion { k1, k2, p1, p2, k3 },
-            _ => {
-                let found = self.distortion_coefficients.len();
-                return Err(Error::DistortionCount { camera: self.name, found });
-            }
+        let coefficients = &self.distortion_coefficients;
+        let Some(distortion) = Distortion::from_coefficients(coefficients) else {
+            let found = coefficients.len();
+            return Err(Error::DistortionCount { camera: self.name, found });
         };
         let (width, height) = (self.width, self.height);
         let (cx, cy) = (cx + 0.5, cy + 0.5);
         let rotation = DMat3::from_cols_array_2d(&self.rotation).transpose();
         let camera = Camera {
             name: self.name,
-            intrinsics: Intrinsics { width, height, fx, fy, cx, cy, distortion },
+            intrinsics: Intrinsics { width, height, fx, fy, cx, cy, lens: distortion.into() },
             extrinsics: Extrinsics { rotation, translation: self.translation * unit_mm },
         };
         camera.validate()?;

@@ -1,5 +1,6 @@
 //! Cameras that look at one hand.
 
+use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use crate::{Camera, Error, Result, Volume};
@@ -47,7 +48,8 @@ impl Rig {
     }
 
     /// Checks each camera and the volume, that names are unique, and that every camera has its
-    /// principal point inside its picture and sees the middle of the volume.
+    /// principal point inside its picture, sees the middle of the volume, and has a lens that does not
+    /// fold over where the volume is seen.
     pub fn validate(&self) -> Result<()> {
         self.validate_names()?;
         self.volume.validate()?;
@@ -81,9 +83,27 @@ impl Rig {
         if !camera.intrinsics.contains(point) {
             return Err(Error::PrincipalPoint { camera: name(), point });
         }
+        if let Some(pixel) = self.fold_in_view(camera) {
+            return Err(Error::Folding { camera: name(), pixel });
+        }
         match camera.project(self.volume.center) {
             Some(pixel) if camera.intrinsics.contains(pixel) => Ok(()),
             _ => Err(Error::VolumeOutside { camera: name() }),
         }
+    }
+
+    /// Where a camera's picture of the volume reaches the fold of its lens: at the volume's corners,
+    /// and the middles of its edges and sides.
+    fn fold_in_view(&self, camera: &Camera) -> Option<DVec2> {
+        let frame = self.volume.rest_frame();
+        let half = [-0.5, 0.0, 0.5];
+        let grid = half.iter().flat_map(|&x| half.iter().map(move |&y| (x, y)));
+        let grid = grid.flat_map(|(x, y)| half.iter().map(move |&z| DVec3::new(x, y, z)));
+        grid.filter_map(|share| {
+            let world = frame.transform_point3(share * self.volume.size);
+            let p = camera.extrinsics.to_camera(world);
+            (p.z > 0.0).then(|| p.truncate() / p.z)
+        })
+        .find_map(|direction| camera.intrinsics.fold_before(direction))
     }
 }

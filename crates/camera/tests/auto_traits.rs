@@ -1,7 +1,8 @@
 //! Everything public can be sent to, and shared between, threads.
 
 use phalanx_camera::{
-    Camera, Distortion, Error, Extrinsics, Intrinsics, PixelMap, Ray, Rig, Triangulation, Volume,
+    Camera, Distortion, Error, Extrinsics, Fisheye, Intrinsics, Lens, PixelMap, Ray, Rig,
+    Triangulation, Volume,
 };
 
 const fn shared<T: Send + Sync>() {}
@@ -16,7 +17,9 @@ shared!(
     Distortion,
     Error,
     Extrinsics,
+    Fisheye,
     Intrinsics,
+    Lens,
     PixelMap,
     Ray,
     Rig,

@@ -33,8 +33,8 @@ fn units_axes_and_pixel_centres_are_brought_to_ours() {
     assert!((top.centre() - DVec3::new(0.0, 0.0, 1000.0)).length() < 1e-9);
     // OpenCV's principal point 319.5, 239.5 is the middle of the picture.
     assert_eq!(top.project(DVec3::ZERO), Some(DVec2::new(320.0, 240.0)));
-    assert_eq!(top.intrinsics.distortion.p2, -0.002);
-    assert!(cameras[1].intrinsics.distortion.is_none());
+    assert_eq!(top.intrinsics.lens.coefficients()[3], -0.002);
+    assert!(cameras[1].intrinsics.lens.is_perfect());
 }
 
 #[test]
@@ -56,14 +56,13 @@ fn calibrations_that_contradict_themselves_are_refused_by_name() {
         let error = cameras_from_opencv_json(CALIBRATION, unit_mm).unwrap_err();
         assert!(matches!(error, Error::Unit { .. }), "{error}");
     }
-    let cases: [(&str, &str, Check); 11] = [
+    let cases: [(&str, &str, Check); 10] = [
         ("[600, 0, 319.5]", "[600, 2, 319.5]", |e| matches!(e, Error::CameraMatrix { .. })),
         ("[0, 0, 1]", "[0, 0, 2]", |e| matches!(e, Error::CameraMatrix { .. })),
         ("[600, 0, 319.5]", "[-600, 0, 319.5]", |e| matches!(e, Error::FocalLength { .. })),
         ("[-0.1, 0.02, 0.001, -0.002, 0.0]", "[-0.1, 0.02, 0.001]", |e| {
             matches!(e, Error::DistortionCount { found: 3, .. })
         }),
-        ("[-0.1,", "[-9.0,", |e| matches!(e, Error::Folding { .. })),
         ("[0, 0, -1]]", "[0, 0, 1]]", |e| matches!(e, Error::Reflection { .. })),
         ("[0, 0, -1]]", "[0, 0.1, -1]]", |e| matches!(e, Error::NotOrthonormal { .. })),
         ("\"width\": 640", "\"width\": 0", |e| matches!(e, Error::ImageSize { .. })),

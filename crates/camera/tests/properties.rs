@@ -2,7 +2,8 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, EulerRot};
 use phalanx_camera::{
-    Camera, Distortion, Error, Extrinsics, Intrinsics, PixelMap, Ray, Rig, Volume, triangulate,
+    Camera, Distortion, Error, Extrinsics, Fisheye, Intrinsics, Lens, PixelMap, Ray, Rig, Volume,
+    triangulate,
 };
 use proptest::prelude::*;
 
@@ -10,19 +11,48 @@ prop_compose! {
     fn distortions()(
         k1 in -0.3..0.3, k2 in -0.1..0.1, k3 in -0.02..0.02, p1 in -5e-3..5e-3, p2 in -5e-3..5e-3,
     ) -> Distortion {
-        Distortion { k1, k2, p1, p2, k3 }
+        Distortion { k1, k2, p1, p2, k3, ..Distortion::NONE }
     }
+}
+
+prop_compose! {
+    /// With all of OpenCV's coefficients.
+    fn rational()(
+        plain in distortions(),
+        (k4, k5, k6) in (-0.2..0.2, -0.1..0.1, -0.02..0.02),
+        (s1, s2, s3, s4) in (-5e-3..5e-3, -5e-3..5e-3, -5e-3..5e-3, -5e-3..5e-3),
+        (tau_x, tau_y) in (-0.02..0.02, -0.02..0.02),
+    ) -> Distortion {
+        Distortion { k4, k5, k6, s1, s2, s3, s4, tau_x, tau_y, ..plain }
+    }
+}
+
+prop_compose! {
+    fn fisheyes()(
+        k1 in -0.1..0.1, k2 in -0.05..0.05, k3 in -0.02..0.02, k4 in -0.01..0.01,
+    ) -> Fisheye {
+        Fisheye { k1, k2, k3, k4 }
+    }
+}
+
+fn lenses() -> impl Strategy<Value = Lens> {
+    prop_oneof![
+        Just(Lens::PERFECT),
+        distortions().prop_map(Lens::from),
+        rational().prop_map(Lens::from),
+        fisheyes().prop_map(Lens::from),
+    ]
 }
 
 prop_compose! {
     fn intrinsics()(
         width in 40u32..800, height in 40u32..600, zoom in 0.8..2.0, aspect in 0.9..1.1,
         (u, v) in (0.4..0.6, 0.4..0.6),
-        distortion in prop_oneof![Just(Distortion::NONE), distortions()],
+        lens in lenses(),
     ) -> Intrinsics {
         let fx = zoom * f64::from(width.max(height));
         let (cx, cy) = (u * f64::from(width), v * f64::from(height));
-        Intrinsics { width, height, fx, fy: fx * aspect, cx, cy, distortion }
+        Intrinsics { width, height, fx, fy: fx * aspect, cx, cy, lens }
     }
 }
 
@@ -56,12 +86,30 @@ fn pixel_of(camera: &Camera, u: f64, v: f64) -> DVec2 {
     DVec2::new(f64::from(camera.intrinsics.width) * u, f64::from(camera.intrinsics.height) * v)
 }
 
+/// Where a lens puts a radius, but for what is not radial, as its formula is printed.
+fn radial(lens: &Lens, r: f64) -> f64 {
+    match lens {
+        Lens::Perspective(d) => {
+            let above = 1.0 + d.k1 * r.powi(2) + d.k2 * r.powi(4) + d.k3 * r.powi(6);
+            let below = 1.0 + d.k4 * r.powi(2) + d.k5 * r.powi(4) + d.k6 * r.powi(6);
+            // Beyond a pole all has folded over.
+            if below > 0.0 { r * above / below } else { f64::NEG_INFINITY }
+        }
+        Lens::Fisheye(Fisheye { k1, k2, k3, k4 }) => {
+            let angle = r.atan();
+            let powers = [(k1, 3), (k2, 5), (k3, 7), (k4, 9)];
+            angle + powers.iter().map(|&(k, n)| k * angle.powi(n)).sum::<f64>()
+        }
+    }
+}
+
 /// The radial part's smallest slope from the middle of the picture to `radius`, by brute force.
-fn least_slope(d: &Distortion, radius: f64) -> f64 {
-    let f = |r: f64| r * (1.0 + d.k1 * r.powi(2) + d.k2 * r.powi(4) + d.k3 * r.powi(6));
+fn least_slope(lens: &Lens, radius: f64) -> f64 {
+    let f = |r: f64| radial(lens, r);
     let slopes = (0..20_000).map(|i| f64::from(i) * radius / 20_000.0).map(|r| {
         let step = radius * 1e-6;
-        (f(r + step) - f(r)) / step
+        let slope = (f(r + step) - f(r)) / step;
+        if slope.is_nan() { f64::NEG_INFINITY } else { slope }
     });
     slopes.fold(f64::INFINITY, f64::min)
 }
@@ -95,21 +143,46 @@ proptest! {
 
     #[test]
     fn the_fold_is_where_the_radius_stops_growing(
-        d in distortions(), x in -3.0..3.0, y in -3.0..3.0,
+        lens in lenses(), x in -3.0..3.0, y in -3.0..3.0,
     ) {
         let point = DVec2::new(x, y);
-        let slope = least_slope(&d, point.length());
-        prop_assume!(slope.abs() > 1e-3);
-        prop_assert_eq!(d.is_one_to_one_at(point), slope > 0.0);
+        let slope = least_slope(&lens, point.length());
+        prop_assume!(slope.abs() > 1e-2);
+        prop_assert_eq!(lens.is_one_to_one_at(point), slope > 0.0);
+        let fold = lens.short_of_fold(point);
+        prop_assert!(lens.is_one_to_one_at(fold) && (slope > 0.0) == (fold == point));
+        prop_assert!(fold == point || !lens.is_one_to_one_at(fold * (1.0 + 1e-9)));
     }
 
     #[test]
-    fn undistort_finds_whatever_distort_made(d in distortions(), x in -1.5..1.5, y in -1.5..1.5) {
+    fn undistort_finds_whatever_distort_made(d in lenses(), x in -1.5..1.5, y in -1.5..1.5) {
         let point = DVec2::new(x, y);
         // Leave out the surroundings of the fold, where the inverse is ill-conditioned.
         prop_assume!(least_slope(&d, point.length()) > 0.2);
         let back = d.undistort(d.distort(point));
         prop_assert!(back.is_some_and(|b| (b - point).length() < 1e-9), "{back:?} is not {point}");
+    }
+
+    /// What bends about the middle alone goes along the radius; the slow search for the inverse is by
+    /// halving.
+    #[test]
+    fn radial_lenses_are_inverted_like_their_formula(
+        d in rational(), f in fisheyes(), wide in any::<bool>(), r in 0.0..1.2f64, turn in 0.0..6.3f64,
+    ) {
+        let Distortion { k1, k2, k3, k4, k5, k6, .. } = d;
+        let centred = Distortion { k1, k2, k3, k4, k5, k6, ..Distortion::NONE };
+        let lens = if wide { Lens::from(f) } else { centred.into() };
+        prop_assume!(least_slope(&lens, 1.3) > 0.2);
+        let seen = radial(&lens, r);
+        let (mut short, mut beyond) = (0.0, 1.3);
+        for _ in 0..80 {
+            let middle = 0.5 * (short + beyond);
+            if radial(&lens, middle) < seen { short = middle } else { beyond = middle }
+        }
+        let along = DVec2::from_angle(turn);
+        prop_assert!((lens.distort(along * r) - along * seen).length() < 1e-12);
+        let found = lens.undistort(along * seen).unwrap();
+        prop_assert!((found - along * short).length() < 1e-10, "{found} is not {}", along * short);
     }
 
     #[test]
@@ -255,7 +328,8 @@ fn windows_beyond_the_image_are_refused() {
 #[test]
 fn a_point_beyond_the_fold_is_not_seen() {
     let distortion = Distortion { k1: -0.3, ..Distortion::NONE };
-    let intrinsics = Intrinsics { distortion, ..Intrinsics::pinhole(640, 480, 600.0) };
+    let lens = distortion.into();
+    let intrinsics = Intrinsics { lens, ..Intrinsics::pinhole(640, 480, 600.0) };
     // Without the check the lens would put it back near the middle of the picture.
     let folded = DVec2::new(1.8, 0.0);
     assert!(distortion.distort(folded).length() < 0.1);

@@ -1,7 +1,7 @@
 //! The fixture, and every contradiction that a rig file can hold.
 
 use glam::{DAffine3, DVec2, DVec3};
-use phalanx_camera::{Error, Rig};
+use phalanx_camera::{Error, Fisheye, Rig};
 
 const DESK: &str = include_str!("../fixtures/desk.toml");
 
@@ -127,11 +127,71 @@ fn contradictory_cameras_are_refused_by_name() {
     refused!(middle("[60, nan]"), Error::NotFinite { field: "principal_point_px", .. });
     let lens = |k: &str| edited(&[("width = 120", &format!("width = 120\n distortion = {k}"))]);
     refused!(lens("[nan, 0, 0, 0, 0]"), Error::NotFinite { field: "distortion", .. });
-    // The middle of the right side is at a radius of 0.226, where r (1 + k1 r²) must still grow and
-    // reach it; the corners, at 0.283, need not be reached.
-    refused!(lens("[-3.0, 0, 0, 0, 0]"), Error::Folding { .. });
-    let corners = lens("[-2.0, 0, 0, 0, 0]").unwrap();
-    assert_eq!(corners.cameras[0].unproject(DVec2::ZERO), None);
+    for other in ["[0.1]", "[0.1, 0, 0]", "[0, 0, 0, 0, 0, 0]"] {
+        refused!(lens(other), Error::DistortionCount { .. });
+    }
+}
+
+/// A lens is refused where it folds over before the hand, and nowhere else.
+#[test]
+fn lenses_may_fold_over_where_no_hand_works() {
+    let lens = |k1: f64, size: f64| {
+        let size = format!("size_mm = [{size}, {size}, {size}]");
+        let distortion = format!("width = 120\n distortion = [{k1}, 0, 0, 0, 0]");
+        edited(&[("size_mm = [100, 100, 100]", &size), ("width = 120", &distortion)])
+    };
+    // The volume's nearest corners are at a radius of √2 · 50 / 650 = 0.109; the sides of the picture
+    // at 0.226 and 0.170. r (1 + k1 r²) turns back at r = 1 / √(−3 k1).
+    for k1 in [-2.0, -10.0, -25.0] {
+        let rig = lens(k1, 100.0).unwrap();
+        assert_eq!(rig.cameras[0].unproject(DVec2::ZERO), None, "{k1}");
+        assert_eq!(Rig::from_toml(&rig.to_toml().unwrap()), Ok(rig));
+    }
+    refused!(lens(-30.0, 100.0), Error::Folding { .. });
+    assert!(lens(-30.0, 80.0).is_ok());
+    // A volume that reaches far beyond the picture, and a fold out of the picture's sight.
+    assert!(lens(-1.0, 600.0).is_ok());
+}
+
+/// A much-used toolkit's sample: 1280 px wide, the fold 85 px within its sides.
+#[test]
+fn a_fold_at_the_sides_leaves_the_hand_in_the_middle() {
+    let rig = edited(&[
+        ("width = 120", "width = 1280\n distortion = [-0.285, 0, 0, 0, 0]"),
+        ("height = 90", "height = 720"),
+        ("focal_px = 265", "focal_px = 770"),
+    ]);
+    let camera = &rig.unwrap().cameras[0];
+    assert_eq!(camera.unproject(DVec2::new(1270.0, 360.0)), None);
+    let ray = camera.unproject(DVec2::new(1100.0, 360.0)).unwrap();
+    let back = camera.project(ray.origin + ray.direction * 700.0).unwrap();
+    assert!((back - DVec2::new(1100.0, 360.0)).length() < 1e-6);
+}
+
+#[test]
+fn lenses_are_read_and_written_by_name() {
+    let lens = |lines: &str| edited(&[("width = 120", &format!("width = 120\n {lines}"))]);
+    let wide = lens("lens = \"fisheye\"\n distortion = [-0.01, 0.002, 0, 0.001]").unwrap();
+    let fisheye = Fisheye { k1: -0.01, k2: 0.002, k3: 0.0, k4: 0.001 };
+    assert_eq!(wide.cameras[0].intrinsics.lens, fisheye.into());
+    assert_eq!(Rig::from_toml(&wide.to_toml().unwrap()), Ok(wide));
+    refused!(
+        lens("lens = \"fisheye\"\n distortion = [1, 0, 0, 0, 0]"),
+        Error::DistortionCount { .. }
+    );
+    let four = lens("distortion = [-0.1, 0.02, 0, 0]").unwrap();
+    assert_eq!(four, lens("lens = \"perspective\"\n distortion = [-0.1, 0.02, 0, 0, 0]").unwrap());
+    assert!(four.to_toml().unwrap().contains("distortion = [-0.1, 0.02, 0.0, 0.0, 0.0]\n"));
+    let rational = lens("distortion = [0.1, 0, 0, 0, 0, 0.2, 0.1, 0]").unwrap();
+    assert_eq!(rational.cameras[0].intrinsics.lens.coefficients().len(), 8);
+    assert_eq!(Rig::from_toml(&rational.to_toml().unwrap()), Ok(rational));
+    assert!(
+        matches!(lens("lens = \"omni\""), Err(Error::Toml { message }) if message.contains("omni"))
+    );
+    refused!(
+        lens("distortion = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1.6, 0]"),
+        Error::NotFinite { .. }
+    );
 }
 
 #[test]

@@ -149,7 +149,10 @@ pub enum Error {
         what: &'static str,
     },
     /// A file of a format that this version does not read.
-    #[error("the {what} has format {found}; this version reads format {known}")]
+    #[error(
+        "the {what} has format {found}; this version reads format {known}: train again, or use the \
+         version that wrote it"
+    )]
     FileVersion {
         /// What was to be read.
         what: &'static str,

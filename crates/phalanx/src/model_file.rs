@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::container::Container;
 use crate::{Descriptor, Estimator, Regression, Result};
 
-const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 6 };
+const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 7 };
 
 /// What the payload holds.
 #[derive(Serialize, Deserialize)]

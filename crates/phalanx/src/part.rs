@@ -10,7 +10,7 @@ use crate::gathered::Gathered;
 use crate::shard::{BLOCK, scenes_of};
 use crate::{Error, Estimator, Progress, Result, Scenes, Shard, Training, describe_scenes};
 
-const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 4 };
+const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 5 };
 
 /// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
 /// and to [`finish`](Self::finish) the estimator. For most regressors that is sums, whose size does

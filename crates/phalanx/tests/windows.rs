@@ -77,8 +77,8 @@ fn overlap(a: &GrayImage, b: &GrayImage) -> f64 {
 
 /// A wide camera above the desk, with a lens.
 fn wide() -> Camera {
-    let distortion = Distortion { k1: -0.1, k2: 0.02, p1: 1e-3, p2: -1e-3, k3: 0.0 };
-    let intrinsics = Intrinsics { distortion, ..Intrinsics::pinhole(480, 360, 420.0) };
+    let lens = Distortion { k1: -0.1, k2: 0.02, p1: 1e-3, p2: -1e-3, ..Distortion::NONE }.into();
+    let intrinsics = Intrinsics { lens, ..Intrinsics::pinhole(480, 360, 420.0) };
     let (at, to) = (DVec3::new(60.0, 650.0, 20.0), DVec3::new(40.0, 0.0, 10.0));
     Camera::look_at("wide", intrinsics, at, to, DVec3::X).unwrap()
 }

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 use image::{GrayImage, RgbImage};
-use phalanx_camera::{Camera, Intrinsics};
+use phalanx_camera::{Camera, Intrinsics, Lens};
 use phalanx_hand::Primitive;
 
 use crate::appearance::Sensor;
@@ -68,12 +68,17 @@ impl Renderer {
         let shares = (0..=Self::BORDER).map(|k| f64::from(k) / f64::from(Self::BORDER));
         let border = shares
             .flat_map(|s| [(s * w, 0.0), (s * w, h), (0.0, s * h), (w, s * h)].map(DVec2::from));
-        let radii = border.filter_map(|p| intrinsics.to_normalised(p)).map(DVec2::length);
-        let farthest = radii.fold(0.0, f64::max);
+        let radii: Option<Vec<f64>> =
+            border.map(|p| intrinsics.to_normalised(p).map(DVec2::length)).collect();
+        let farthest = match radii {
+            Some(radii) => radii.into_iter().fold(0.0, f64::max),
+            // The lens folds over within the picture.
+            None => intrinsics.lens.short_of_fold(DVec2::X * Lens::FARTHEST).length(),
+        };
         // A little more, where the lens allows it, so that what is cut there stays out of sight.
         let reach = (0..=10)
             .map(|percent| farthest * (1.1 - 0.01 * f64::from(percent)))
-            .find(|&radius| intrinsics.distortion.is_one_to_one_at(DVec2::X * radius));
+            .find(|&radius| intrinsics.lens.is_one_to_one_at(DVec2::X * radius));
         Ok(Self {
             intrinsics,
             to_camera: DAffine3::from_mat3_translation(
@@ -322,7 +327,7 @@ impl Renderer {
 
     /// Appends the outline held in `ideal` in pixels, bent by the lens.
     fn push_outline(&mut self, focal: f64) {
-        if self.intrinsics.distortion.is_none() {
+        if self.intrinsics.lens.is_perfect() {
             let pixels = self.ideal.iter().filter_map(|&p| self.intrinsics.to_pixel(p));
             self.corners.extend(pixels);
             return;

@@ -103,8 +103,10 @@ fn other_files_and_formats_are_refused_by_name() {
         assert_eq!(message(foreign), "not a phalanx model: the file does not begin with its mark");
     }
     let mut newer = bytes();
-    newer[8..12].copy_from_slice(&7_u32.to_le_bytes());
-    assert_eq!(message(&newer), "the model has format 7; this version reads format 6");
+    newer[8..12].copy_from_slice(&8_u32.to_le_bytes());
+    let expected = "the model has format 8; this version reads format 7: train again, or use the \
+                    version that wrote it";
+    assert_eq!(message(&newer), expected);
     let mut endless = bytes();
     endless[12..20].copy_from_slice(&u64::MAX.to_le_bytes());
     assert!(matches!(Estimator::from_bytes(&endless), Err(Error::FileLength { .. })));

@@ -3,13 +3,13 @@
 use crate::strategies::{balls, camera, cylinders, lenses, solids, unit_vectors};
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use image::GrayImage;
-use phalanx_camera::{Camera, Distortion, Extrinsics, Intrinsics};
+use phalanx_camera::{Camera, Distortion, Extrinsics, Intrinsics, Lens};
 use phalanx_hand::{Ball, Primitive};
 use phalanx_render::{Renderer, Supersampling};
 use proptest::prelude::*;
 
-fn lens(distortion: Distortion) -> Camera {
-    camera(Intrinsics { distortion, ..Intrinsics::pinhole(120, 90, 110.0) })
+fn lens(lens: impl Into<Lens>) -> Camera {
+    camera(Intrinsics { lens: lens.into(), ..Intrinsics::pinhole(120, 90, 110.0) })
 }
 
 fn silhouette(camera: &Camera, solids: &[Primitive]) -> GrayImage {
@@ -116,7 +116,7 @@ proptest! {
 
     #[test]
     fn coverage_adds_up_to_the_area(ball in balls(40.0)) {
-        let camera = lens(Distortion::NONE);
+        let camera = lens(Lens::PERFECT);
         let image = Renderer::new(&camera)
             .unwrap()
             .coverage(&[Primitive::Sphere(ball)], Supersampling::X8)
@@ -159,7 +159,7 @@ proptest! {
 
     #[test]
     fn a_squashed_cylinder_covers_its_points_and_no_more(solid in cylinders(40.0)) {
-        let camera = lens(Distortion::NONE);
+        let camera = lens(Lens::PERFECT);
         let mask = silhouette(&camera, &[solid]);
         let mut touched = GrayImage::new(120, 90);
         for point in points(&solid, 40_000) {
@@ -187,7 +187,7 @@ proptest! {
         solid in solids(60.0), axis in unit_vectors(), angle in -3.0..3.0,
         x in -500.0..500.0, y in -500.0..500.0, z in -500.0..500.0,
     ) {
-        let camera = lens(Distortion::NONE);
+        let camera = lens(Lens::PERFECT);
         let turn = DQuat::from_axis_angle(axis, angle);
         let motion = DAffine3::from_rotation_translation(turn, DVec3::new(x, y, z));
         let back = motion.inverse();
@@ -207,7 +207,7 @@ proptest! {
 
 #[test]
 fn coarse_outlines_lose_no_more_than_they_may() {
-    let camera = lens(Distortion::NONE);
+    let camera = lens(Lens::PERFECT);
     let ball = [Primitive::Sphere(Ball::new(DVec3::new(3.0, -2.0, 300.0), 80.0))];
     let drawn = |deviation: f64| {
         let mut renderer = Renderer::new(&camera).unwrap().with_deviation(deviation).unwrap();
@@ -222,7 +222,7 @@ fn coarse_outlines_lose_no_more_than_they_may() {
 
 #[test]
 fn an_image_of_another_size_is_replaced() {
-    let mut renderer = Renderer::new(&lens(Distortion::NONE)).unwrap();
+    let mut renderer = Renderer::new(&lens(Lens::PERFECT)).unwrap();
     let ball = [Primitive::Sphere(Ball::new(DVec3::ZERO, 20.0))];
     let mut image = GrayImage::from_pixel(3, 5, image::Luma([9]));
     renderer.silhouette_into(&ball, &mut image).unwrap();

@@ -1,7 +1,7 @@
 //! Random cameras and solids for the tests.
 
 use glam::{DVec2, DVec3};
-use phalanx_camera::{Camera, Distortion, Intrinsics};
+use phalanx_camera::{Camera, Distortion, Fisheye, Intrinsics, Lens};
 use phalanx_hand::{Ball, Primitive};
 use proptest::prelude::*;
 
@@ -12,10 +12,12 @@ pub(crate) fn camera(intrinsics: Intrinsics) -> Camera {
 }
 
 /// A lens that keeps to itself within a 120×90 image of focal length 110 px.
-pub(crate) fn lenses() -> impl Strategy<Value = Distortion> {
+pub(crate) fn lenses() -> impl Strategy<Value = Lens> {
     let bent = (-0.2..0.3f64, -0.05..0.05f64, -0.01..0.01f64, -0.01..0.01f64)
-        .prop_map(|(k1, k2, p1, p2)| Distortion { k1, k2, p1, p2, k3: 0.0 });
-    prop_oneof![Just(Distortion::NONE), bent]
+        .prop_map(|(k1, k2, p1, p2)| Distortion { k1, k2, p1, p2, ..Distortion::NONE }.into());
+    let fisheye = (-0.1..0.1f64, -0.05..0.05f64)
+        .prop_map(|(k1, k2)| Fisheye { k1, k2, ..Fisheye::default() }.into());
+    prop_oneof![Just(Lens::PERFECT), bent, fisheye]
 }
 
 pub(crate) fn balls(reach: f64) -> impl Strategy<Value = Ball> {
