@@ -54,4 +54,46 @@ pub enum Error {
         /// The writer's own words.
         what: String,
     },
+    /// A take without any pose, for a format that cannot hold gaps alone.
+    #[error("{format}: no frame of the take has a pose")]
+    NoPose {
+        /// The format.
+        format: &'static str,
+    },
+    /// A take with more frames than a format can hold.
+    #[error("{format} holds at most {most}; write the take in parts, or in another format")]
+    TooLong {
+        /// The format.
+        format: &'static str,
+        /// How many of what.
+        most: usize,
+    },
+    /// A unit that a format does not have.
+    #[error("{format} has lengths in {units}")]
+    Unit {
+        /// The format.
+        format: &'static str,
+        /// The units that it has.
+        units: &'static str,
+    },
+    /// No unit of length.
+    #[error("'{name}' is no unit of length (mm, cm or m)")]
+    LengthUnit {
+        /// The name that was met.
+        name: String,
+    },
+    /// No axes, or a mirror.
+    #[error(
+        "'{name}' names no axes: 'world', 'hand', or the world's axis that each of the file's is, without a mirror, such as 'xz-y'"
+    )]
+    Axes {
+        /// The name that was met.
+        name: String,
+    },
+    /// No model's names.
+    #[error("'{name}' names no model (phalanx, opensim or myohand)")]
+    CoordinateNames {
+        /// The name that was met.
+        name: String,
+    },
 }

@@ -2,6 +2,8 @@
 
 pub mod calibration;
 mod error;
+pub mod export;
+mod model;
 pub mod take;
 
 pub use error::{Error, Result};

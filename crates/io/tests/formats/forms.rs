@@ -6,7 +6,7 @@ use phalanx_io::take::{
 };
 use proptest::prelude::*;
 
-use crate::sample;
+use crate::{sample, strategies};
 
 /// That two takes are the same up to so many degrees or millimetres.
 fn assert_near(read: &Take, written: &Take, tolerance: f64) {
@@ -64,7 +64,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_form_keeps_every_take(take in sample::takes()) {
+    fn every_form_keeps_every_take(take in strategies::takes()) {
         prop_assert!(take.validate().is_ok());
         if !take.frames.is_empty() {
             assert_near(&read_csv(&csv(&take)[..]).unwrap(), &take, DECIMALS);

@@ -1,0 +1,74 @@
+//! BVH: the person's own bones and their turns, for animation.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
+
+use super::{Placement, filled_poses, frame_rate};
+use crate::Result;
+use crate::model::{BONE_NAMES, BONES, Bone, Skeleton};
+use crate::take::Take;
+
+/// A bone's channels. The turns compose in this order: R = R_Z R_X R_Y.
+const TURNS: &str = "Zrotation Xrotation Yrotation";
+
+/// The take as a BVH file: the wrist's place and 17 bones, degrees. Where no hand was found the
+/// pose before is kept. The rate is even: see [`largest_jitter`](super::largest_jitter).
+///
+/// # Errors
+/// [`crate::Error::NoPose`] for a take without one; a take that does not keep to [`Take::validate`].
+pub fn bvh(take: &Take, placement: Placement) -> Result<String> {
+    take.validate()?;
+    let poses = filled_poses(take, "BVH")?;
+    let skeleton = Skeleton::new(&take.header.hand);
+    let scale = placement.unit.per_mm();
+    let mut text = "HIERARCHY\n".to_owned();
+    push_bone(&mut text, &skeleton, 0, 0, scale);
+    let period = 1.0 / frame_rate(take);
+    text += &format!("MOTION\nFrames: {}\nFrame Time: {period:.7}\n", poses.len());
+    let file_from_hand = placement.file_from_world(&take.header) * take.header.world_from_hand;
+    for pose in &poses {
+        let place = file_from_hand.transform_point3(pose.translation()) * scale;
+        let mut cells = place.to_array().to_vec();
+        for (bone, rotation) in skeleton.rotations(pose).into_iter().enumerate() {
+            let turn = if bone == 0 { turn_of(&file_from_hand) * rotation } else { rotation };
+            let (z, x, y) = turn.to_euler(EulerRot::ZXY);
+            cells.extend([z, x, y].map(f64::to_degrees));
+        }
+        let cells: Vec<String> = cells.iter().map(|cell| format!("{cell:.6}")).collect();
+        text += &(cells.join(" ") + "\n");
+    }
+    Ok(text)
+}
+
+fn turn_of(frame: &DAffine3) -> DQuat {
+    let DMat3 { x_axis, y_axis, z_axis } = frame.matrix3;
+    DQuat::from_mat3(&DMat3::from_cols(x_axis, y_axis, z_axis)).normalize()
+}
+
+/// A bone and all that it carries.
+fn push_bone(text: &mut String, skeleton: &Skeleton, bone: usize, depth: usize, scale: f64) {
+    let indent = "\t".repeat(depth);
+    let (kind, channels) = match depth {
+        0 => ("ROOT", "6 Xposition Yposition Zposition"),
+        _ => ("JOINT", "3"),
+    };
+    let Bone { offset, tip, .. } = &skeleton.bones[bone];
+    text.push_str(&format!(
+        "{indent}{kind} {}\n{indent}{{\n{indent}\tOFFSET {}\n{indent}\tCHANNELS {channels} {TURNS}\n",
+        BONE_NAMES[bone],
+        cells(*offset * scale),
+    ));
+    for child in (0..BONES).filter(|&child| skeleton.bones[child].parent == Some(bone)) {
+        push_bone(text, skeleton, child, depth + 1, scale);
+    }
+    if let Some(tip) = tip {
+        let offset = cells(*tip * scale);
+        text.push_str(&format!(
+            "{indent}\tEnd Site\n{indent}\t{{\n{indent}\t\tOFFSET {offset}\n{indent}\t}}\n"
+        ));
+    }
+    text.push_str(&format!("{indent}}}\n"));
+}
+
+fn cells(point: DVec3) -> String {
+    format!("{:.6} {:.6} {:.6}", point.x, point.y, point.z)
+}

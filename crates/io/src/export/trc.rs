@@ -1,0 +1,41 @@
+//! TRC: the joints as markers, for OpenSim and Pose2Sim.
+
+use super::{Placement, frame_rate};
+use crate::take::{JOINT_NAMES, Take};
+use crate::{Error, Result};
+
+/// The take's joints as a TRC file; `name` is the file's own, which its first line repeats. Joints
+/// of frames without a hand are NaN.
+///
+/// # Errors
+/// [`Error::Unit`] for centimetres, which readers of TRC do not know; a take that does not keep to
+/// [`Take::validate`].
+pub fn trc(take: &Take, name: &str, placement: Placement) -> Result<String> {
+    take.validate()?;
+    if placement.unit == super::LengthUnit::Centimetre {
+        return Err(Error::Unit { format: "TRC", units: "mm or m" });
+    }
+    let (rate, frames, joints) = (frame_rate(take), take.frames.len(), JOINT_NAMES.len());
+    let name: String = name.chars().filter(|letter| !letter.is_control()).collect();
+    let unit = placement.unit.symbol();
+    let mut text = format!(
+        "PathFileType\t4\t(X/Y/Z)\t{name}\n\
+         DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n\
+         {rate}\t{rate}\t{frames}\t{joints}\t{unit}\t{rate}\t1\t{frames}\n"
+    );
+    let markers = JOINT_NAMES.map(|joint| format!("{joint}\t\t\t")).concat();
+    let axes: Vec<String> = (1..=joints).map(|k| format!("X{k}\tY{k}\tZ{k}")).collect();
+    text += &format!("Frame#\tTime\t{markers}\n\t\t{}\n\n", axes.join("\t"));
+    for (frame, number) in take.frames.iter().zip(1_u64..) {
+        text += &format!("{number}\t{:.6}", frame.time);
+        for joint in 0..joints {
+            let estimate = frame.estimate.as_ref();
+            text += &match estimate.map(|e| placement.point(&take.header, e.joints[joint])) {
+                Some(point) => format!("\t{:.6}\t{:.6}\t{:.6}", point.x, point.y, point.z),
+                None => "\tNaN\tNaN\tNaN".to_owned(),
+            };
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}

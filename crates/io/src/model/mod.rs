@@ -1,0 +1,7 @@
+//! The hand as other tools draw it: bones that turn, and a skin on them.
+
+mod bones;
+mod skin;
+
+pub(crate) use bones::{BONE_NAMES, BONES, Bone, Skeleton};
+pub(crate) use skin::Skin;

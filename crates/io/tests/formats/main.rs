@@ -1,0 +1,8 @@
+//! Takes: their three forms, what is refused, and the files of other tools.
+
+mod exports;
+mod forms;
+mod refusals;
+mod sample;
+mod schema;
+mod strategies;
