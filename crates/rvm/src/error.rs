@@ -1,7 +1,5 @@
 //! What can go wrong, by name.
 
-use crate::Kernel;
-
 /// Result of this crate's fallible calls.
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -124,12 +122,12 @@ pub enum Error {
         columns: u64,
     },
     /// Columns were made for another kernel than the fitter's.
-    #[error("the fitter's kernel is {fitter:?}, the columns' {columns:?}")]
+    #[error("the fitter's kernel is {fitter}, the columns' {columns}")]
     OtherKernel {
         /// Kernel of the fitter.
-        fitter: Kernel,
+        fitter: String,
         /// Kernel of the columns.
-        columns: Kernel,
+        columns: String,
     },
     /// A name that C does not take.
     #[error("{name:?} is no C identifier")]

@@ -2,8 +2,9 @@
 
 use faer::{ColRef, Mat};
 
-use super::{Basis, Model};
 use crate::linalg;
+use crate::model::Model;
+use crate::model::parts::Basis;
 
 impl Model {
     /// The derivatives of the predicted targets by the inputs, m×K in the units of both, at one
@@ -40,7 +41,9 @@ impl Model {
 
 #[cfg(test)]
 mod tests {
-    use crate::{ForwardSelection, Kernel, Ridge, Width};
+    use crate::basis::kernel::{Kernel, Width};
+    use crate::ridge::Ridge;
+    use crate::sparse::orthogonal_least_squares::ForwardSelection;
 
     use super::*;
 

@@ -1,15 +1,15 @@
 //! The fitted regressor: one type, whichever way it was fitted.
 
+mod codegen;
 mod gradient;
-mod parts;
-mod predict;
+pub(crate) mod parts;
+pub(crate) mod predict;
+pub(crate) mod report;
 
 use faer::MatRef;
 
-pub use parts::{Basis, Factor, ModelParts, Posterior};
-pub use predict::Scratch;
-
-use crate::Result;
+use crate::error::Result;
+use crate::model::parts::{Basis, ModelParts};
 
 /// A fitted regressor from K inputs to m targets, with its uncertainty.
 ///
@@ -110,7 +110,7 @@ impl Model {
 }
 
 impl TryFrom<ModelParts> for Model {
-    type Error = crate::Error;
+    type Error = crate::error::Error;
 
     fn try_from(parts: ModelParts) -> Result<Self> {
         Self::from_parts(parts)

@@ -1,6 +1,7 @@
 //! The plain numbers of a model, and the check that they fit together.
 
-use crate::{Error, Result, check};
+use crate::data::check;
+use crate::error::{Error, Result};
 
 /// Everything that a [`Model`](crate::Model) is made of, in plain vectors.
 ///

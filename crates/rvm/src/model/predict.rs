@@ -3,9 +3,11 @@
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
-use super::{Basis, Factor, Model, Posterior};
+use crate::data::check;
+use crate::error::{Error, Result};
 use crate::linalg::axpy;
-use crate::{Error, Result, check};
+use crate::model::Model;
+use crate::model::parts::{Basis, Factor, Posterior};
 
 /// Centres whose distances grow together.
 const LANES: usize = 8;

@@ -1,0 +1,6 @@
+//! Basis functions, and the normal equations over them.
+
+pub(crate) mod design;
+pub(crate) mod kernel;
+pub(crate) mod normal_equations;
+pub(crate) mod spec;

@@ -1,0 +1,246 @@
+//! A small perceptron, fitted in minutes without a graphics card.
+
+mod adam;
+mod layers;
+pub(crate) mod network;
+pub(crate) mod pca_mlp;
+mod samples;
+
+use faer::{Mat, MatRef};
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use rayon::prelude::*;
+
+use crate::data::check;
+use crate::data::permutation::shuffle;
+use crate::data::scaler::Standardiser;
+use crate::error::{Error, Result};
+use crate::mlp::adam::Adam;
+use crate::mlp::layers::{Layers, LeftOut, Pass};
+use crate::mlp::network::{Network, NetworkParts};
+use crate::mlp::samples::{Samples, Scaling, check_inputs};
+use crate::model::report::{Report, Trace};
+use crate::transform::affine_map::Projection;
+
+/// A multilayer perceptron: layers of x ↦ s(Wx + b), s(z) = z/(1 + e⁻ᶻ) (Elfwing, Uchibe and Doya
+/// 2018), and a linear one after them.
+///
+/// Fitted to the mean absolute error of the standardised targets by Adam (Kingma and Ba 2015) in
+/// shuffled batches, at a rate that rises over the first third of the steps and falls to nothing
+/// over the others (Smith and Topin 2019), with dropout (Srivastava et al. 2014). Inputs keep their
+/// proportions: put them on one scale first, as [`Components`](crate::Components) does.
+///
+/// One sample in 16, drawn at random, is not learnt from; the standard deviations are the root mean square errors of
+/// these, one for each target, and the trace holds their mean absolute error, in standardised units,
+/// after each epoch.
+///
+/// For targets that depend on many inputs at once, and samples that go into the tens of thousands.
+///
+/// ```
+/// use phalanx_rvm::{Perceptron, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(2, 2000, |i, t| ((t * (7 + 6 * i)) as f32 * 0.0618).fract() - 0.5);
+/// let y = Mat::from_fn(1, 2000, |_, t| f64::from(x[(0, t)] * x[(1, t)]));
+/// let fitter = Perceptron { hidden: vec![32, 32], dropout: 0.0, ..Perceptron::default() };
+/// let network = fitter.fit(x.as_ref(), y.as_ref())?.network;
+///
+/// let (mut mean, mut std) = ([0.0], [0.0]);
+/// network.predict_into(&[0.3, -0.4], &mut Default::default(), &mut mean, &mut std)?;
+/// assert!((mean[0] + 0.12).abs() < 0.02 && std[0] < 0.02);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Perceptron {
+    /// How wide each layer is but the last; none for linear regression.
+    pub hidden: Vec<usize>,
+    /// How often each sample is looked at.
+    pub epochs: usize,
+    /// Samples of a step, at most. Every 128 of them go their way on a thread of its own, with slopes
+    /// as large as the weights.
+    pub batch: usize,
+    /// The highest rate.
+    pub rate: f64,
+    /// The share of each layer that is left out at each step, from 0 to below 1.
+    pub dropout: f64,
+    /// Of the first weights, the samples held out, the order of samples and what is left out.
+    pub seed: u64,
+}
+
+/// A fitted network and how the fitting went.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FittedNetwork {
+    /// The network.
+    pub network: Network,
+    /// How the fitting went.
+    pub report: Report,
+}
+
+impl Default for Perceptron {
+    fn default() -> Self {
+        let hidden = vec![512; 3];
+        Self { hidden, epochs: 40, batch: 256, rate: 2e-3, dropout: 0.2, seed: 1 }
+    }
+}
+
+impl Perceptron {
+    /// Fits X (K×I) to Y (m×I).
+    pub fn fit(&self, x: MatRef<'_, f32>, y: MatRef<'_, f64>) -> Result<FittedNetwork> {
+        self.fit_observed(x, y, &mut |_| ())
+    }
+
+    /// Fits X (K×I) to Y (m×I); `observe` is told the number of epochs done after each.
+    pub fn fit_observed(
+        &self,
+        x: MatRef<'_, f32>,
+        y: MatRef<'_, f64>,
+        observe: &mut dyn FnMut(usize),
+    ) -> Result<FittedNetwork> {
+        self.check()?;
+        check_inputs(x)?;
+        let targets = Standardiser::fit(y)?;
+        check::length("columns (samples) of y", x.ncols(), y.ncols())?;
+        let scaling = Scaling::of(x);
+        let samples = Samples::new(x, y, &scaling, &targets, self.seed);
+        let mut random = Pcg64Mcg::seed_from_u64(self.seed);
+        let mut layers = Layers::new(self.widths(x.nrows(), &samples), &mut random);
+        let mut errors = Vec::with_capacity(self.epochs);
+        if samples.y.nrows() > 0 {
+            self.descend(&samples, &mut layers, &mut random, &mut |layers, epoch| {
+                errors.push(samples.mean_error(layers));
+                observe(epoch);
+            });
+        }
+        let network = Network::from_parts(NetworkParts {
+            layers: folded(&layers, &scaling, &targets)?,
+            mean: targets.mean().to_vec(),
+            scale: targets.scale().to_vec(),
+            std: samples.deviations(&layers, &targets),
+        })?;
+        let trace = Trace { converged: true, objective: errors };
+        Ok(FittedNetwork { network, report: Report::new(vec![trace], None) })
+    }
+
+    fn check(&self) -> Result<()> {
+        check::positive("rate", self.rate)?;
+        for (name, count) in [("epochs", self.epochs), ("batch", self.batch)] {
+            if count == 0 {
+                return Err(Error::Parameter { name, value: 0.0, requirement: "at least 1" });
+            }
+        }
+        if self.hidden.contains(&0) {
+            let requirement = "at least 1 wide everywhere";
+            return Err(Error::Parameter { name: "hidden", value: 0.0, requirement });
+        }
+        if !(0.0..1.0).contains(&self.dropout) {
+            let requirement = "from 0 to below 1";
+            return Err(Error::Parameter { name: "dropout", value: self.dropout, requirement });
+        }
+        Ok(())
+    }
+
+    /// How many numbers go into each layer, and out of the last.
+    fn widths(&self, inputs: usize, samples: &Samples<'_>) -> Vec<usize> {
+        let mut widths = vec![inputs];
+        widths.extend(&self.hidden);
+        widths.push(samples.y.nrows());
+        widths
+    }
+
+    fn descend(
+        &self,
+        samples: &Samples<'_>,
+        layers: &mut Layers,
+        random: &mut Pcg64Mcg,
+        after: &mut dyn FnMut(&Layers, usize),
+    ) {
+        let mut order = samples.learnt_from.clone();
+        let batch = self.batch.min(order.len());
+        let steps = self.epochs * (order.len() / batch);
+        let mut adam = Adam::new(layers.weights().len());
+        // So many samples as one pass takes go their way apart, however many threads there are.
+        let parts = batch.div_ceil(Pass::SAMPLES);
+        let mut passes: Vec<Pass> = std::iter::repeat_with(Pass::default).take(parts).collect();
+        for epoch in 1..=self.epochs {
+            shuffle(&mut order, random);
+            for batch in order.chunks_exact(batch) {
+                let seeds: Vec<u64> = passes.iter().map(|_| random.next_u64()).collect();
+                let parts = passes.par_iter_mut().zip(batch.par_chunks(Pass::SAMPLES));
+                parts.zip(seeds).for_each(|((pass, part), seed)| {
+                    let random = Pcg64Mcg::seed_from_u64(seed);
+                    let left_out = LeftOut { share: self.dropout, random };
+                    let left_out = (self.dropout > 0.0).then_some(left_out);
+                    pass.forward(layers, samples.inputs(part), left_out);
+                    let count = (batch.len() * samples.y.nrows()) as f32;
+                    for (column, &sample) in pass.output_columns().zip(part) {
+                        let targets = samples.y.col_as_slice(sample);
+                        for (value, target) in column.iter_mut().zip(targets) {
+                            *value = (*value - target).signum() / count;
+                        }
+                    }
+                    pass.backward(layers);
+                });
+                let slopes: Vec<&[f32]> = passes.iter().map(Pass::slopes).collect();
+                let rate = self.rate * one_cycle(adam.steps(), steps);
+                adam.step(layers.weights_mut(), &slopes, rate);
+            }
+            after(layers, epoch);
+        }
+    }
+}
+
+/// The share of the highest rate at a step of so many.
+fn one_cycle(step: usize, steps: usize) -> f64 {
+    const RISE: f64 = 0.3;
+    const FIRST: f64 = 0.04;
+    let at = step as f64 / steps as f64;
+    let between = |from: f64, to: f64, share: f64| {
+        to + (from - to) * 0.5 * (1.0 + (std::f64::consts::PI * share).cos())
+    };
+    if at < RISE {
+        between(FIRST, 1.0, at / RISE)
+    } else {
+        between(1.0, 0.0, (at - RISE) / (1.0 - RISE))
+    }
+}
+
+/// The layers with the scaling of inputs in the first, and nothing in the last for targets that do not
+/// vary.
+fn folded(layers: &Layers, scaling: &Scaling, targets: &Standardiser) -> Result<Vec<Projection>> {
+    let last = layers.count() - 1;
+    let varying = targets.varying();
+    let mut projections = Vec::with_capacity(layers.count());
+    for layer in 0..layers.count() {
+        let (weights, bias) = layers.layer(layer);
+        let mut matrix =
+            Mat::from_fn(weights.nrows(), weights.ncols(), |i, k| f64::from(weights[(i, k)]));
+        let mut offset: Vec<f64> = bias.iter().map(|&b| f64::from(b)).collect();
+        if layer == 0 {
+            matrix *= faer::Scale(scaling.factor);
+            for (k, mean) in scaling.mean.iter().enumerate() {
+                let column = matrix.col(k);
+                offset
+                    .iter_mut()
+                    .zip(column.iter())
+                    .for_each(|(sum, weight)| *sum -= weight * mean);
+            }
+        }
+        if layer == last {
+            let (mut whole, mut all) = (
+                Mat::zeros(targets.scale().len(), matrix.ncols()),
+                vec![0.0; targets.scale().len()],
+            );
+            for (row, &target) in varying.iter().enumerate() {
+                all[target] = offset[row];
+                for k in 0..matrix.ncols() {
+                    whole[(target, k)] = matrix[(row, k)];
+                }
+            }
+            (matrix, offset) = (whole, all);
+        }
+        projections.push(Projection::affine(matrix.as_ref(), &offset)?);
+    }
+    Ok(projections)
+}

@@ -1,0 +1,106 @@
+//! A fitted perceptron.
+
+use crate::data::check;
+use crate::data::scaler::Standardiser;
+use crate::error::{Error, Result};
+use crate::model::predict::Scratch;
+use crate::transform::affine_map::Projection;
+
+/// A fitted [`Perceptron`](crate::Perceptron): affine maps with z/(1 + e⁻ᶻ) between them, and a
+/// standard deviation for each target, the same everywhere.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "NetworkParts", into = "NetworkParts"))]
+pub struct Network {
+    parts: NetworkParts,
+}
+
+/// What a [`Network`] is made of.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct NetworkParts {
+    /// At least one, the first first; the last one's outputs are standardised targets.
+    pub layers: Vec<Projection>,
+    /// The mean of each target.
+    pub mean: Vec<f64>,
+    /// How much of a target one standardised unit is; 0 of one that does not vary.
+    pub scale: Vec<f64>,
+    /// The standard deviation of each target's prediction.
+    pub std: Vec<f64>,
+}
+
+impl Network {
+    /// Puts one together from its parts.
+    pub fn from_parts(parts: NetworkParts) -> Result<Self> {
+        for pair in parts.layers.windows(2) {
+            check::length("inputs of a layer", pair[0].outputs(), pair[1].inputs())?;
+        }
+        let Some(last) = parts.layers.last() else {
+            return Err(Error::Parts { field: "layers", problem: "are none" });
+        };
+        for (what, found) in [("means", &parts.mean), ("standard deviations", &parts.std)] {
+            check::length(what, last.outputs(), found.len())?;
+        }
+        Standardiser::from_parts(parts.mean.clone(), parts.scale.clone())?;
+        if !parts.std.iter().all(|&std| check::usable(std) && std >= 0.0) {
+            return Err(Error::Parts { field: "std", problem: "holds an unusable number" });
+        }
+        Ok(Self { parts })
+    }
+
+    /// A look at the parts.
+    pub fn parts(&self) -> &NetworkParts {
+        &self.parts
+    }
+
+    /// Length K of an input.
+    pub fn inputs(&self) -> usize {
+        self.parts.layers[0].inputs()
+    }
+
+    /// Number m of targets.
+    pub fn outputs(&self) -> usize {
+        self.parts.std.len()
+    }
+
+    /// Mean and standard deviation of the m targets of one input `x` (length K), all finite.
+    pub fn predict_into(
+        &self,
+        x: &[f64],
+        scratch: &mut Scratch,
+        mean: &mut [f64],
+        std: &mut [f64],
+    ) -> Result<()> {
+        check::answers(self.outputs(), mean, std)?;
+        let Scratch { single, hidden, projected, .. } = scratch;
+        let NetworkParts { layers, .. } = &self.parts;
+        layers[0].apply_into(x, single, hidden)?;
+        for layer in &layers[1..] {
+            for z in hidden.iter_mut() {
+                *z /= 1.0 + (-*z).exp();
+            }
+            layer.apply_into(hidden, single, projected)?;
+            std::mem::swap(hidden, projected);
+        }
+        let targets = self.parts.mean.iter().zip(&self.parts.scale);
+        for (value, (z, (mean, scale))) in mean.iter_mut().zip(hidden.iter().zip(targets)) {
+            *value = mean + scale * z;
+        }
+        std.copy_from_slice(&self.parts.std);
+        Ok(())
+    }
+}
+
+impl TryFrom<NetworkParts> for Network {
+    type Error = Error;
+
+    fn try_from(parts: NetworkParts) -> Result<Self> {
+        Self::from_parts(parts)
+    }
+}
+
+impl From<Network> for NetworkParts {
+    fn from(network: Network) -> Self {
+        network.parts
+    }
+}

@@ -1,0 +1,80 @@
+//! A network on principal components.
+
+use crate::data::check;
+use crate::error::{Error, Result};
+use crate::mlp::network::Network;
+use crate::model::predict::Scratch;
+use crate::transform::block_pca::Components;
+
+/// A network and the principal components of the inputs, which it reads.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Parts", into = "Parts"))]
+pub struct NetworkOnComponents {
+    parts: Parts,
+}
+
+/// What is stored.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Parts {
+    components: Components,
+    network: Network,
+}
+
+impl NetworkOnComponents {
+    /// Puts components and a network that reads as many together.
+    pub fn from_parts(components: Components, network: Network) -> Result<Self> {
+        check::length("inputs of the network", components.outputs(), network.inputs())?;
+        Ok(Self { parts: Parts { components, network } })
+    }
+
+    /// The components.
+    pub fn components(&self) -> &Components {
+        &self.parts.components
+    }
+
+    /// The network.
+    pub fn network(&self) -> &Network {
+        &self.parts.network
+    }
+
+    /// Length K of an input.
+    pub fn inputs(&self) -> usize {
+        self.components().inputs()
+    }
+
+    /// Number m of targets.
+    pub fn outputs(&self) -> usize {
+        self.network().outputs()
+    }
+
+    /// Mean and standard deviation of the m targets of one input `x` (length K), all finite.
+    pub fn predict_into(
+        &self,
+        x: &[f64],
+        scratch: &mut Scratch,
+        mean: &mut [f64],
+        std: &mut [f64],
+    ) -> Result<()> {
+        let mut z = std::mem::take(&mut scratch.components);
+        let applied = self.components().apply_into(x, &mut scratch.single, &mut z);
+        let predicted = applied.and_then(|()| self.network().predict_into(&z, scratch, mean, std));
+        scratch.components = z;
+        predicted
+    }
+}
+
+impl TryFrom<Parts> for NetworkOnComponents {
+    type Error = Error;
+
+    fn try_from(parts: Parts) -> Result<Self> {
+        Self::from_parts(parts.components, parts.network)
+    }
+}
+
+impl From<NetworkOnComponents> for Parts {
+    fn from(own: NetworkOnComponents) -> Self {
+        own.parts
+    }
+}

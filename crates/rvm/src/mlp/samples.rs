@@ -1,0 +1,132 @@
+//! What a perceptron is fitted to, and how far off it is.
+
+use faer::{ColRef, Mat, MatRef};
+use rayon::prelude::*;
+
+use crate::data::permutation::random_subset;
+use crate::data::scaler::Standardiser;
+use crate::error::{Error, Result};
+use crate::mlp::layers::{Layers, Pass};
+
+/// Of so many samples one is held out: it tells how far predictions are off.
+const HELD_OUT: usize = 16;
+
+/// The samples.
+pub(super) struct Samples<'a> {
+    /// K×I, as they were given: there may be no room for them twice.
+    x: MatRef<'a, f32>,
+    scaling: &'a Scaling,
+    /// Those targets that vary, m×I, scaled.
+    pub(super) y: Mat<f32>,
+    pub(super) learnt_from: Vec<usize>,
+    held_out: Vec<usize>,
+}
+
+/// Refuses no inputs, and such as are not finite.
+pub(super) fn check_inputs(x: MatRef<'_, f32>) -> Result<()> {
+    let (rows, columns) = x.shape();
+    if rows == 0 || columns == 0 {
+        return Err(Error::Empty { what: "x", rows, columns });
+    }
+    for (column, values) in x.col_iter().enumerate() {
+        if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+            let value = f64::from(x[(row, column)]);
+            return Err(Error::BadValue { what: "x", row, column, value });
+        }
+    }
+    Ok(())
+}
+
+/// How inputs are brought to means of zero and a mean variance of 1.
+pub(super) struct Scaling {
+    pub(super) mean: Vec<f64>,
+    /// What they are multiplied by; 0 where nothing varies.
+    pub(super) factor: f64,
+}
+
+impl Scaling {
+    pub(super) fn of(x: MatRef<'_, f32>) -> Self {
+        let count = x.ncols() as f64;
+        let mut mean = vec![0.0; x.nrows()];
+        for column in x.col_iter() {
+            mean.iter_mut().zip(column.iter()).for_each(|(sum, &v)| *sum += f64::from(v) / count);
+        }
+        let offset = |column: ColRef<'_, f32>| -> f64 {
+            column.iter().zip(&mean).map(|(&v, mean)| (f64::from(v) - mean).powi(2)).sum()
+        };
+        let squares: f64 = x.col_iter().map(offset).sum();
+        let variance = squares / (count * x.nrows() as f64);
+        let factor = if variance > 0.0 { variance.sqrt().recip() } else { 0.0 };
+        Self { mean, factor }
+    }
+}
+
+impl<'a> Samples<'a> {
+    pub(super) fn new(
+        x: MatRef<'a, f32>,
+        y: MatRef<'_, f64>,
+        scaling: &'a Scaling,
+        targets: &Standardiser,
+        seed: u64,
+    ) -> Self {
+        let varying = targets.varying();
+        let target = |j: usize, i: usize| targets.scaled(varying[j], y[(varying[j], i)]) as f32;
+        let held_out = random_subset(x.ncols(), x.ncols() / HELD_OUT, seed);
+        let learnt_from = (0..x.ncols()).filter(|i| held_out.binary_search(i).is_err()).collect();
+        Self {
+            x,
+            scaling,
+            y: Mat::from_fn(varying.len(), x.ncols(), target),
+            learnt_from,
+            held_out,
+        }
+    }
+
+    /// The inputs of some samples, scaled, one after the other.
+    pub(super) fn inputs(&self, samples: &[usize]) -> Vec<f32> {
+        let Scaling { mean, factor } = self.scaling;
+        let scaled = |(&value, mean): (&f32, &f64)| ((f64::from(value) - mean) * factor) as f32;
+        samples.iter().flat_map(|&sample| self.x.col(sample).iter().zip(mean).map(scaled)).collect()
+    }
+
+    /// What tells how far predictions are off: the samples held out or, of a handful, all.
+    fn judges(&self) -> &[usize] {
+        if self.held_out.is_empty() { &self.learnt_from } else { &self.held_out }
+    }
+
+    /// The differences from the targets of all judges, one after the other.
+    fn differences(&self, layers: &Layers) -> Vec<f32> {
+        let differences = |pass: &mut Pass, some: &[usize]| {
+            pass.forward(layers, self.inputs(some), None);
+            let pairs = pass.output_columns().zip(some).flat_map(|(column, &sample)| {
+                let pairs = column.iter().zip(self.y.col_as_slice(sample));
+                pairs.map(|(value, target)| value - target)
+            });
+            pairs.collect::<Vec<f32>>()
+        };
+        let parts = self.judges().par_chunks(Pass::SAMPLES).map_init(Pass::default, differences);
+        parts.collect::<Vec<_>>().concat()
+    }
+
+    pub(super) fn mean_error(&self, layers: &Layers) -> f64 {
+        let differences = self.differences(layers);
+        differences.iter().map(|d| f64::from(d.abs())).sum::<f64>() / differences.len() as f64
+    }
+
+    /// The root mean square error of each target, in its own unit; 0 of those that do not vary.
+    pub(super) fn deviations(&self, layers: &Layers, targets: &Standardiser) -> Vec<f64> {
+        let mut deviations = vec![0.0; targets.scale().len()];
+        let varying = targets.varying();
+        if varying.is_empty() {
+            return deviations;
+        }
+        let differences = self.differences(layers);
+        for (j, &target) in varying.iter().enumerate() {
+            let own = differences.iter().skip(j).step_by(varying.len());
+            let squares: f64 = own.map(|d| f64::from(*d).powi(2)).sum();
+            let mean = squares / self.judges().len() as f64;
+            deviations[target] = mean.sqrt() * targets.scale()[target];
+        }
+        deviations
+    }
+}

@@ -1,0 +1,207 @@
+//! Relevance vector machines that find their Gaussians' widths by themselves.
+
+mod evidence;
+mod lbfgs;
+
+use faer::{Mat, MatRef};
+
+use crate::basis::design::Design;
+use crate::basis::kernel::{Kernel, Width};
+use crate::data::check;
+use crate::data::problem::Problem;
+use crate::data::scaler::Standardiser;
+use crate::error::{Error, Result};
+use crate::model::report::{Fit, Progress, Report, Trace};
+use crate::rvm::ard::evidence::Widths;
+use crate::rvm::ard::lbfgs::Point;
+use crate::rvm::multi_output::{MultivariateRvm, Vectors};
+
+/// An input whose width is below this share of the greatest is not read: over all the samples it
+/// moves no exponent by as much.
+const IRRELEVANT: f64 = 1e-6;
+
+/// Which inputs share a width.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Tie {
+    /// All of them.
+    All,
+    /// Each has its own: automatic relevance determination of inputs.
+    None,
+    /// Consecutive inputs, so many for each width; together all inputs.
+    Blocks(Vec<usize>),
+}
+
+/// The multivariate relevance vector machine with its Gaussians' widths learnt too: for one target
+/// Tipping's "η-RVM" (2001, section 4.2 and appendix C), with a width for all inputs, for each or
+/// for blocks of them.
+///
+/// Two climbs of the same evidence take turns: over the vectors at given widths, as
+/// [`MultivariateRvm`] does; and over the logs of widths and precisions together at given vectors,
+/// by L-BFGS with the closed-form gradient. The trace holds the evidence after each turn. Inputs
+/// that the evidence finds irrelevant are no longer read
+/// ([`Model::selected_features`](crate::Model::selected_features)); what is left of the widths
+/// [`Model::length_scales`](crate::Model::length_scales) tells.
+///
+/// ```
+/// use phalanx_rvm::{LearntWidths, Tie, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// // Of three inputs the first matters much, the second little, and the third not at all.
+/// let x = Mat::from_fn(3, 150, |i, t| ((t * (7 + 6 * i)) as f64 * 0.618).fract() * 4.0);
+/// let y = Mat::from_fn(1, 150, |_, t| (2.0 * x[(0, t)]).sin() + 0.3 * x[(1, t)]);
+///
+/// let each = LearntWidths::default().fit(x.as_ref(), y.as_ref())?; // `Tie::None`
+/// let scales = each.model.length_scales().expect("Gaussians have them");
+/// assert!(scales[0] < scales[1]);
+///
+/// let one = LearntWidths { tie: Tie::All, ..LearntWidths::default() };
+/// let one = one.fit(x.as_ref(), y.as_ref())?;
+/// assert!(each.report.traces[0].objective.last() > one.report.traces[0].objective.last());
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LearntWidths {
+    /// The machine; its kernel, which must be Gaussian, is where the widths start.
+    pub rvm: MultivariateRvm,
+    /// Which inputs share a width.
+    pub tie: Tie,
+    /// Most turns, at least 1.
+    pub rounds: usize,
+    /// Most steps over the widths in a turn, at least 1.
+    pub steps: usize,
+}
+
+impl Default for LearntWidths {
+    fn default() -> Self {
+        Self { rvm: MultivariateRvm::default(), tie: Tie::None, rounds: 10, steps: 25 }
+    }
+}
+
+impl LearntWidths {
+    /// Fits X (K×I) to Y (m×I).
+    pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
+        self.fit_observed(x, y, &|_| ())
+    }
+
+    /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step over the vectors.
+    pub fn fit_observed(
+        &self,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        observe: &dyn Fn(Progress),
+    ) -> Result<Fit> {
+        let Kernel::Gaussian(width) = self.rvm.kernel else {
+            return Err(Error::NoWidth);
+        };
+        check::iterations(self.rounds)?;
+        check::iterations(self.steps)?;
+        width.check()?;
+        let problem = Problem::new(x, y)?;
+        let ties = self.ties(x.nrows())?;
+        let inputs = problem.features();
+        let mut learning = Learning {
+            ties: inputs.iter().map(|&i| ties[i]).collect(),
+            widths: vec![
+                width.magnitude(inputs.len()).ln();
+                ties.iter().max().map_or(0, |t| t + 1)
+            ],
+            vectors: Vectors::default(),
+            problem,
+            inputs,
+        };
+        let mut objective: Vec<f64> = Vec::new();
+        loop {
+            let (fit, vectors) = learning.climb_vectors(&self.rvm, x, y, observe)?;
+            let gained = objective.last().map_or(f64::INFINITY, |last| vectors.evidence - last);
+            objective.push(vectors.evidence);
+            let converged = gained <= self.rvm.tolerance || vectors.columns.is_empty();
+            if converged || objective.len() == self.rounds {
+                let trace = Trace { converged, objective };
+                return Ok(Fit { model: fit.model, report: Report::new(vec![trace], None) });
+            }
+            learning.vectors = vectors;
+            learning.climb_widths(self)?;
+        }
+    }
+
+    /// Which width each input has.
+    fn ties(&self, inputs: usize) -> Result<Vec<usize>> {
+        Ok(match &self.tie {
+            Tie::All => vec![0; inputs],
+            Tie::None => (0..inputs).collect(),
+            Tie::Blocks(blocks) => {
+                let of_all = blocks.iter().fold(0_usize, |sum, &block| sum.saturating_add(block));
+                check::length("inputs of all blocks", inputs, of_all)?;
+                let of_block = |(tie, &size): (usize, &usize)| std::iter::repeat_n(tie, size);
+                blocks.iter().enumerate().flat_map(of_block).collect()
+            }
+        })
+    }
+}
+
+/// What is known so far.
+struct Learning {
+    problem: Problem,
+    /// The inputs that vary, and which width each of them has.
+    inputs: Vec<usize>,
+    ties: Vec<usize>,
+    /// Logs of the widths on standardised inputs.
+    widths: Vec<f64>,
+    vectors: Vectors,
+}
+
+impl Learning {
+    /// The best vectors at these widths.
+    fn climb_vectors(
+        &self,
+        rvm: &MultivariateRvm,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        observe: &dyn Fn(Progress),
+    ) -> Result<(Fit, Vectors)> {
+        // Scaled by their widths' roots the inputs want a Gaussian of width 1.
+        let mut scale = self.problem.inputs.scale().to_vec();
+        let greatest = self.ties.iter().map(|&tie| self.widths[tie].exp()).fold(0.0, f64::max);
+        for (&input, &tie) in self.inputs.iter().zip(&self.ties) {
+            let width = self.widths[tie].exp();
+            let relevant = width > IRRELEVANT * greatest;
+            scale[input] = if relevant { scale[input] / width.sqrt() } else { 0.0 };
+        }
+        let inputs = Standardiser::from_parts(self.problem.inputs.mean().to_vec(), scale)?;
+        let scaled = Problem::scaled(inputs, x, y)?;
+        let design = Design::full(&scaled, Kernel::Gaussian(Width::Beta(1.0)))?;
+        rvm.resume(&design, &self.vectors, observe)
+    }
+
+    /// The best widths for these vectors.
+    fn climb_widths(&mut self, settings: &LearntWidths) -> Result<()> {
+        let z = crate::linalg::subrows(self.problem.z.as_ref(), &self.inputs);
+        let all = &self.problem.y;
+        let varying: Vec<usize> =
+            (0..all.ncols()).filter(|&j| all.col(j).iter().any(|&v| v != 0.0)).collect();
+        let y = Mat::from_fn(all.nrows(), varying.len(), |t, v| all[(t, varying[v])]);
+        let widths = Widths {
+            z: z.as_ref(),
+            y: y.as_ref(),
+            ties: &self.ties,
+            count: self.widths.len(),
+            vectors: &self.vectors.columns,
+            floor: settings.rvm.noise_floor,
+        };
+        let mut at = self.widths.clone();
+        at.extend(self.vectors.alpha.iter().map(|alpha| alpha.ln()));
+        let (value, gradient) =
+            widths.evaluate(&at).ok_or(Error::Singular { size: self.vectors.columns.len() })?;
+        let start = Point { at, value, gradient };
+        let found = lbfgs::maximise(start, settings.steps, settings.rvm.tolerance, |at| {
+            widths.evaluate(at)
+        });
+        let (logs, alphas) = found.at.split_at(self.widths.len());
+        self.widths = logs.to_vec();
+        self.vectors.alpha = alphas.iter().map(|log| log.exp()).collect();
+        Ok(())
+    }
+}

@@ -1,0 +1,128 @@
+//! Taking steps until none gains, and starting again nearby.
+
+use crate::data::check;
+use crate::error::{Error, Result};
+use crate::model::report::{Progress, Trace};
+use crate::rvm::marginal_likelihood::{Evidence, Targets};
+
+/// Steps between two computations from scratch, besides one for each active column: then the
+/// computation, which costs about a step for each, hardly matters.
+const STEPS_BETWEEN: usize = 10;
+/// A restart leaves out one, two or three of so many parts of the active columns, in turn.
+const PARTS: usize = 6;
+
+/// How the evidence is climbed.
+pub(crate) struct Ascent {
+    /// Least noise variance, as a share of the target's variance, in (0, 1].
+    pub(crate) noise_floor: f64,
+    /// Nats that each active column must add; at least 0.
+    pub(crate) price: f64,
+    /// Steps that gain no more, in nats, are not taken; above 0.
+    pub(crate) tolerance: f64,
+    /// Most steps, at least 1.
+    pub(crate) max_iterations: usize,
+    /// Climbs after the first.
+    pub(crate) restarts: usize,
+    /// Most active columns.
+    pub(crate) most: usize,
+}
+
+impl Ascent {
+    pub(crate) fn check(&self) -> Result<()> {
+        check::positive("tolerance", self.tolerance)?;
+        check::iterations(self.max_iterations)?;
+        if !(self.price >= 0.0 && self.price.is_finite()) {
+            let requirement = "at least 0 and finite";
+            return Err(Error::Parameter { name: "price", value: self.price, requirement });
+        }
+        if self.noise_floor > 0.0 && self.noise_floor <= 1.0 {
+            return Ok(());
+        }
+        Err(Error::Parameter {
+            name: "noise_floor",
+            value: self.noise_floor,
+            requirement: "above 0 and at most 1",
+        })
+    }
+
+    /// No column is active.
+    pub(crate) fn start<'a>(&self, targets: Targets<'a>) -> Result<Evidence<'a>> {
+        Evidence::new(targets, self.noise_floor, self.most, self.price)
+    }
+
+    /// Climbs from where it is put, and then again from the best so far without some neighbours, which
+    /// finds others in their place (iterated local search: Lourenço, Martin and Stützle 2003).
+    /// One column at a time ends where no change of one column gains, of which there are many.
+    pub(crate) fn run<'a>(
+        &self,
+        mut best: Evidence<'a>,
+        observe: &dyn Fn(Progress),
+    ) -> Result<(Evidence<'a>, Trace)> {
+        let (mut objective, mut left) = (Vec::new(), self.max_iterations);
+        let mut converged = self.climb(&mut best, &mut left, |progress| {
+            objective.push(progress.evidence);
+            observe(progress);
+        })?;
+        for round in 0..self.restarts {
+            if best.active.len() == 0 || !converged {
+                break;
+            }
+            let mut other = best.without(&neighbours(&best, round))?;
+            converged = self.climb(&mut other, &mut left, observe)?;
+            if other.objective() > best.objective() + self.tolerance {
+                objective.push(other.value());
+                best = other;
+            }
+        }
+        Ok((best, Trace { converged, objective }))
+    }
+
+    /// Takes the step that gains the most, again and again, and tells of each. It
+    /// has converged when nothing gains by numbers computed from scratch.
+    fn climb(
+        &self,
+        evidence: &mut Evidence<'_>,
+        left: &mut usize,
+        mut observe: impl FnMut(Progress),
+    ) -> Result<bool> {
+        loop {
+            let step = evidence.best_step();
+            let gains = step.gain > self.tolerance;
+            if !gains && evidence.stale == 0 {
+                return Ok(true);
+            }
+            if !gains || evidence.stale >= STEPS_BETWEEN + evidence.active.len() {
+                evidence.refresh()?;
+                continue;
+            }
+            if *left == 0 {
+                return Ok(false);
+            }
+            *left -= 1;
+            evidence.take(step.change);
+            observe(Progress {
+                target: 0,
+                iteration: self.max_iterations - *left,
+                evidence: evidence.value(),
+                vectors: evidence.active.len(),
+            });
+        }
+    }
+}
+
+/// An active column and those most correlated with it: another one in every round.
+fn neighbours(evidence: &Evidence<'_>, round: usize) -> Vec<usize> {
+    // By their precisions, so that the order of the samples does not matter.
+    let (active, alpha) = evidence.active();
+    let mut places: Vec<usize> = (0..active.len()).collect();
+    places.sort_by(|&a, &b| alpha[a].total_cmp(&alpha[b]));
+    let mut columns: Vec<usize> = places.into_iter().map(|i| active[i]).collect();
+    // Steps of the golden section visit them evenly, whatever their number.
+    let share = (round as f64 * 0.618_033_988_749_894_9).fract();
+    let middle = columns[(share * columns.len() as f64) as usize];
+    let gram = evidence.targets.gram;
+    let correlation = |k: usize| gram[(k, middle)].powi(2) / gram[(k, k)];
+    columns.sort_by(|&a, &b| correlation(b).total_cmp(&correlation(a)));
+    columns.truncate((columns.len() * (round % 3 + 1)).div_ceil(PARTS));
+    columns
+}

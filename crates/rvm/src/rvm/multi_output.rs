@@ -1,0 +1,171 @@
+//! The multivariate relevance vector machine: all targets share their relevant columns.
+
+use faer::{Mat, MatRef};
+
+use crate::basis::design::Design;
+use crate::basis::kernel::{Kernel, Width};
+use crate::basis::normal_equations;
+use crate::basis::normal_equations::Equations;
+use crate::basis::spec::Columns;
+use crate::data::problem::Problem;
+use crate::error::{Error, Result};
+use crate::model::parts::{Factor, Posterior};
+use crate::model::report::{Fit, Progress, Report};
+use crate::rvm::marginal_likelihood::Targets;
+use crate::rvm::marginal_likelihood::ascent::Ascent;
+use crate::stream::Sums;
+use crate::stream::summed::Summed;
+
+/// The multivariate relevance vector machine (Thayananthan, Navaratnam, Stenger, Torr and Cipolla
+/// 2006) in the fast form of Ha and Zhang (2017, arXiv 1704.05041): the targets share each
+/// column's precision, so that all of them keep the same few columns, and the weights' prior is
+/// relative to each target's noise, so that they share the posterior covariance too.
+///
+/// It is climbed as [`Tipping`](crate::Tipping) is: each step adds, re-estimates or deletes the one
+/// column that raises the evidence of all targets together the most, by rank-one updates that all
+/// targets share, or gives every target the noise at which the evidence is greatest. The trace holds
+/// the log evidence of all standardised targets that vary, as `Tipping`'s do. An unpenalised bias
+/// stands beside the columns.
+///
+/// ```
+/// use phalanx_rvm::{MultivariateRvm, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(1, 80, |_, t| t as f64 / 20.0);
+/// let y = Mat::from_fn(3, 80, |j, t| (x[(0, t)] * (j + 1) as f64).sin());
+/// let rvm = MultivariateRvm { most: Some(12), ..MultivariateRvm::default() };
+/// let model = rvm.fit(x.as_ref(), y.as_ref())?.model;
+/// assert!(model.kept_samples().len() <= 12, "shared by the three targets");
+/// assert_eq!(model.weights().shape(), (3, model.kept_samples().len()));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MultivariateRvm {
+    /// Basis columns.
+    pub kernel: Kernel,
+    /// Most columns to keep, at least 1: with so many none is added until one is deleted. `None`
+    /// leaves it to the evidence.
+    pub most: Option<usize>,
+    /// Least noise variance, as a share of each target's variance, in (0, 1]: data without noise
+    /// would drive it to zero.
+    pub noise_floor: f64,
+    /// Nats that each column kept must add to the evidence; at least 0. Columns that add next to
+    /// nothing cost time in every prediction.
+    pub price: f64,
+    /// Steps that gain no more than this, in nats, are not taken; above 0.
+    pub tolerance: f64,
+    /// Climbs after the first, each from the best so far without some columns that neighbour each
+    /// other: more of them find more evidence.
+    pub restarts: usize,
+    /// Most steps, at least 1.
+    pub max_iterations: usize,
+}
+
+impl Default for MultivariateRvm {
+    fn default() -> Self {
+        Self {
+            kernel: Kernel::Gaussian(Width::Scatter(1.0)),
+            most: None,
+            noise_floor: 1e-4,
+            price: 0.02,
+            tolerance: 1e-3,
+            restarts: 0,
+            max_iterations: 100_000,
+        }
+    }
+}
+
+impl MultivariateRvm {
+    /// Fits X (K×I) to Y (m×I).
+    pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
+        self.fit_observed(x, y, &|_| ())
+    }
+
+    /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step.
+    pub fn fit_observed(
+        &self,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        observe: &dyn Fn(Progress),
+    ) -> Result<Fit> {
+        let problem = Problem::new(x, y)?;
+        let design = Design::full(&problem, self.kernel)?;
+        Ok(self.resume(&design, &Vectors::default(), observe)?.0)
+    }
+
+    /// Fits sums over columns of the same kernel.
+    pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
+        columns.check_kernel(self.kernel)?;
+        let summed = Summed::new(columns, sums)?;
+        Ok(self.resume(&summed, &Vectors::default(), &|_| ())?.0)
+    }
+
+    /// Climbs from vectors that are known to be good; returns those that it ends with too.
+    pub(crate) fn resume(
+        &self,
+        equations: &dyn Equations,
+        vectors: &Vectors,
+        observe: &dyn Fn(Progress),
+    ) -> Result<(Fit, Vectors)> {
+        let ascent = self.ascent()?;
+        let (gram, correlations) = (equations.gram(), equations.correlations());
+        let energies = equations.energies();
+        let varying: Vec<usize> = (0..energies.len()).filter(|&j| energies[j] > 0.0).collect();
+        let correlations =
+            Mat::from_fn(gram.ncols(), varying.len(), |k, v| correlations[(k, varying[v])]);
+        let of_varying: Vec<f64> = varying.iter().map(|&j| energies[j]).collect();
+        let mut start = ascent.start(Targets {
+            gram: &gram,
+            correlations: correlations.as_ref(),
+            energies: &of_varying,
+            freedom: equations.samples() as f64 - 1.0,
+        })?;
+        if !vectors.columns.is_empty() {
+            start = start.resume(&vectors.columns, &vectors.alpha)?;
+        }
+        let (evidence, trace) = ascent.run(start, observe)?;
+        let mut noise = vec![0.0; energies.len()];
+        for (&j, variance) in varying.iter().zip(evidence.noise()) {
+            noise[j] = variance.sqrt();
+        }
+        let (columns, alpha) = evidence.active();
+        let (columns, alpha) = (columns.to_vec(), alpha.to_vec());
+        let found = Vectors { columns, alpha, evidence: evidence.value() };
+        let (active, mu, factor) = evidence.into_posterior()?;
+        let mut kept = active.clone();
+        kept.sort_unstable();
+        let place = |column: usize| kept.partition_point(|&kept| kept < column);
+        let mut weights = Mat::zeros(kept.len(), energies.len());
+        for (i, &column) in active.iter().enumerate() {
+            for (v, &j) in varying.iter().enumerate() {
+                weights[(place(column), j)] = mu[(i, v)];
+            }
+        }
+        let factor = Factor::pack(active.iter().map(|&k| place(k)).collect(), factor.as_ref());
+        let posterior = Posterior::Weights(vec![factor]);
+        let model = normal_equations::model(equations, &kept, weights.as_ref(), &noise, posterior);
+        Ok((Fit { model, report: Report::new(vec![trace], None) }, found))
+    }
+
+    fn ascent(&self) -> Result<Ascent> {
+        let &Self { most, noise_floor, price, tolerance, restarts, max_iterations, .. } = self;
+        if most == Some(0) {
+            return Err(Error::Parameter { name: "most", value: 0.0, requirement: "at least 1" });
+        }
+        let most = most.unwrap_or(usize::MAX);
+        let ascent = Ascent { noise_floor, price, tolerance, max_iterations, restarts, most };
+        ascent.check()?;
+        Ok(ascent)
+    }
+}
+
+/// Relevant columns and their precisions relative to the noise.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Vectors {
+    pub(crate) columns: Vec<usize>,
+    pub(crate) alpha: Vec<f64>,
+    /// The log evidence that they give, nats.
+    pub(crate) evidence: f64,
+}

@@ -1,0 +1,176 @@
+//! Tipping's relevance vector machine, one target at a time.
+
+use faer::{Mat, MatRef};
+use rayon::prelude::*;
+
+use crate::basis::design::Design;
+use crate::basis::kernel::{Kernel, Width};
+use crate::basis::normal_equations;
+use crate::basis::normal_equations::Equations;
+use crate::data::problem::Problem;
+use crate::error::Result;
+use crate::model::Model;
+use crate::model::parts::{Factor, Posterior};
+use crate::model::report::{Fit, Progress, Report, Trace};
+use crate::rvm::marginal_likelihood::ascent::Ascent;
+use crate::rvm::marginal_likelihood::{Evidence, Targets};
+
+/// Tipping's relevance vector machine (2001) by fast marginal likelihood maximisation (Tipping and
+/// Faul 2003), for each target by itself.
+///
+/// Each step adds, re-estimates or deletes one column by a rank-one update, or gives the noise the
+/// variance at which the evidence is greatest: whichever raises the evidence the most. It has
+/// converged when no step gains. What one step at a time converges to depends on its first steps,
+/// so that it is left again [`restarts`](Self::restarts) times, in search of a better one. An
+/// unpenalised bias stands beside the columns. The traces, one per target, hold the log evidence in
+/// nats of the standardised target, after each step of the first climb and after each restart that
+/// found more; it falls only where a column goes that is not worth its price.
+///
+/// ```
+/// use phalanx_rvm::{Tipping, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(1, 100, |_, t| t as f64 / 10.0);
+/// let y = Mat::from_fn(1, 100, |_, t| x[(0, t)].sin());
+/// let fit = Tipping::default().fit(x.as_ref(), y.as_ref())?;
+/// assert!(fit.report.traces[0].converged);
+/// assert!(fit.model.kept_samples().len() < 20, "of 100");
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Tipping {
+    /// Basis columns.
+    pub kernel: Kernel,
+    /// Least noise variance, as a share of the target's variance, in (0, 1]: data without noise
+    /// would drive it to zero.
+    pub noise_floor: f64,
+    /// Nats that each column kept must add to the evidence; at least 0. Columns that add next to
+    /// nothing cost time in every prediction.
+    pub price: f64,
+    /// Steps that gain no more than this, in nats, are not taken; above 0.
+    pub tolerance: f64,
+    /// Climbs after the first, each from the best so far without some columns that neighbour each
+    /// other: more of them find more evidence.
+    pub restarts: usize,
+    /// Most steps per target, at least 1.
+    pub max_iterations: usize,
+}
+
+impl Default for Tipping {
+    fn default() -> Self {
+        Self {
+            kernel: Kernel::Gaussian(Width::Scatter(3.0)),
+            noise_floor: 1e-4,
+            price: 0.02,
+            tolerance: 1e-3,
+            restarts: 15,
+            max_iterations: 100_000,
+        }
+    }
+}
+
+impl Tipping {
+    /// Fits X (K×I) to Y (m×I).
+    pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
+        self.fit_observed(x, y, &|_| ())
+    }
+
+    /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step. Targets are fitted in
+    /// parallel, so it may be called by several threads at once.
+    ///
+    /// ```
+    /// use std::sync::atomic::{AtomicUsize, Ordering};
+    /// use phalanx_rvm::{Tipping, faer::Mat};
+    ///
+    /// # fn main() -> phalanx_rvm::Result<()> {
+    /// let x = Mat::from_fn(1, 50, |_, t| t as f64 / 5.0);
+    /// let y = Mat::from_fn(1, 50, |_, t| x[(0, t)].sin());
+    /// let most = AtomicUsize::new(0);
+    /// Tipping::default().fit_observed(x.as_ref(), y.as_ref(), &|progress| {
+    ///     most.fetch_max(progress.vectors, Ordering::Relaxed);
+    /// })?;
+    /// assert!(most.into_inner() > 0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn fit_observed(
+        &self,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        observe: &(dyn Fn(Progress) + Sync),
+    ) -> Result<Fit> {
+        let &Self { kernel, noise_floor, tolerance, price, restarts, max_iterations } = self;
+        let ascent =
+            Ascent { noise_floor, price, tolerance, max_iterations, restarts, most: usize::MAX };
+        ascent.check()?;
+        let problem = Problem::new(x, y)?;
+        let design = Design::full(&problem, kernel)?;
+        let (gram, correlations) = (design.gram(), design.correlations());
+        let energies = design.energies();
+        let rows: Vec<(Row, Trace)> = (0..energies.len())
+            .into_par_iter()
+            .map(|j| {
+                if energies[j] == 0.0 {
+                    let trace = Trace { converged: true, objective: Vec::new() };
+                    return Ok((Row::constant(), trace));
+                }
+                let start = ascent.start(Targets {
+                    gram: &gram,
+                    correlations: correlations.as_ref().subcols(j, 1),
+                    energies: &energies[j..=j],
+                    freedom: design.samples() as f64 - 1.0,
+                })?;
+                let (evidence, trace) =
+                    ascent.run(start, &|progress| observe(Progress { target: j, ..progress }))?;
+                Ok((Row::new(evidence)?, trace))
+            })
+            .collect::<Result<_>>()?;
+        let (rows, traces): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
+        Ok(Fit { model: join(&design, rows), report: Report::new(traces, None) })
+    }
+}
+
+/// One target's relevant columns.
+struct Row {
+    weights: Vec<f64>,
+    /// Noise deviation.
+    noise: f64,
+    /// M with Σ = σ² MᵀM, over columns of the design.
+    factor: Factor,
+}
+
+impl Row {
+    /// A target that does not vary.
+    fn constant() -> Self {
+        let factor = Factor { columns: Vec::new(), packed: Vec::new() };
+        Self { weights: Vec::new(), noise: 0.0, factor }
+    }
+
+    fn new(evidence: Evidence<'_>) -> Result<Self> {
+        let noise = evidence.noise()[0].sqrt();
+        let (active, weights, factor) = evidence.into_posterior()?;
+        let weights = weights.col_as_slice(0).to_vec();
+        Ok(Self { weights, noise, factor: Factor::pack(active, factor.as_ref()) })
+    }
+}
+
+/// Joins the targets' rows into one model over all columns that any of them keeps.
+fn join(design: &Design<'_>, rows: Vec<Row>) -> Model {
+    let mut kept: Vec<usize> = rows.iter().flat_map(|row| row.factor.columns.clone()).collect();
+    kept.sort_unstable();
+    kept.dedup();
+    let mut weights = Mat::zeros(kept.len(), rows.len());
+    let mut factors = Vec::with_capacity(rows.len());
+    let mut noise = Vec::with_capacity(rows.len());
+    for (j, mut row) in rows.into_iter().enumerate() {
+        for (column, weight) in row.factor.columns.iter_mut().zip(row.weights) {
+            *column = kept.partition_point(|kept| kept < column);
+            weights[(*column, j)] = weight;
+        }
+        factors.push(row.factor);
+        noise.push(row.noise);
+    }
+    normal_equations::model(design, &kept, weights.as_ref(), &noise, Posterior::Weights(factors))
+}

@@ -1,0 +1,103 @@
+//! Features selected linearly, then samples by Gaussian kernels.
+
+use faer::MatRef;
+
+use crate::basis::design::Design;
+use crate::basis::kernel::{Kernel, Width};
+use crate::basis::normal_equations::Equations;
+use crate::basis::spec::Columns;
+use crate::data::problem::Problem;
+use crate::error::{Error, Result};
+use crate::model::report::{Fit, Report};
+use crate::sparse::agarwal_triggs::{Bridges, Stop};
+use crate::stream::Sums;
+use crate::stream::summed::Summed;
+
+/// The paper's "both" (de Campos and Murray 2006, section 4): bridges over linear columns select
+/// features, then bridges over Gaussian columns on those features select samples.
+///
+/// The traces are the two stages'. If no feature survives, the model is the mean.
+///
+/// ```
+/// use phalanx_rvm::{Cascade, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(30, 200, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
+/// let y = Mat::from_fn(1, 200, |_, t| (3.0 * x[(4, t)]).sin() + x[(9, t)]);
+/// let model = Cascade::default().fit(x.as_ref(), y.as_ref())?.model;
+/// assert!(model.selected_features().len() < 30 && model.kept_samples().len() < 200);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Cascade {
+    /// When features are dropped.
+    pub features: Stop,
+    /// When samples are dropped.
+    pub samples: Stop,
+    /// Width of the Gaussian kernels, on the features selected.
+    pub width: Width,
+    /// ν/m > 0 of both stages, as in [`Bridges::nu`].
+    pub nu: f64,
+}
+
+impl Default for Cascade {
+    fn default() -> Self {
+        let stop = Bridges::default().stop;
+        Self {
+            features: stop,
+            samples: stop,
+            width: Width::Scatter(1.0),
+            nu: Bridges::default().nu,
+        }
+    }
+}
+
+impl Cascade {
+    /// Fits X (K×I) to Y (m×I).
+    pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
+        self.width.check()?;
+        let problem = Problem::new(x, y)?;
+        let first = self.first(&Design::full(&problem, Kernel::Linear)?)?;
+        let features = first.model.selected_features().to_vec();
+        self.second(first, &Design::new(&problem, features, Kernel::Gaussian(self.width))?)
+    }
+
+    /// The first of two passes over a stream: the fit over linear columns, whose
+    /// [`selected_features`](crate::Model::selected_features) the second pass reads. If there are
+    /// none, it is the cascade's fit already.
+    pub fn fit_features(&self, linear: &Columns, sums: &Sums) -> Result<Fit> {
+        linear.check_kernel(Kernel::Linear)?;
+        self.first(&Summed::new(linear, sums)?)
+    }
+
+    /// The second pass: the fit over Gaussian columns on the features that the `first` selected
+    /// ([`Columns::over`]).
+    pub fn fit_samples(&self, first: Fit, gaussian: &Columns, sums: &Sums) -> Result<Fit> {
+        gaussian.check_kernel(Kernel::Gaussian(self.width))?;
+        let selected = first.model.selected_features();
+        if let Some(&feature) = gaussian.features().iter().find(|f| !selected.contains(f)) {
+            return Err(Error::NotSelected { feature });
+        }
+        self.second(first, &Summed::new(gaussian, sums)?)
+    }
+
+    fn first(&self, linear: &dyn Equations) -> Result<Fit> {
+        self.bridges(Kernel::Linear, self.features).solve(linear)
+    }
+
+    fn second(&self, first: Fit, gaussian: &dyn Equations) -> Result<Fit> {
+        if first.model.selected_features().is_empty() {
+            return Ok(first);
+        }
+        let bridges = self.bridges(Kernel::Gaussian(self.width), self.samples);
+        let Fit { model, report } = bridges.solve(gaussian)?;
+        let traces = [first.report.traces, report.traces].concat();
+        Ok(Fit { model, report: Report::new(traces, report.penalty) })
+    }
+
+    fn bridges(&self, kernel: Kernel, stop: Stop) -> Bridges {
+        Bridges { kernel, stop, nu: self.nu, ..Bridges::default() }
+    }
+}

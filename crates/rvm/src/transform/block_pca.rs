@@ -1,0 +1,90 @@
+//! Principal components of blocks of inputs, as a map that is made once.
+
+use faer::{Mat, MatRef};
+use rayon::prelude::*;
+
+use crate::data::check;
+use crate::error::Result;
+use crate::transform::affine_map::Projection;
+use crate::transform::pca::{Block, Principal, of_blocks};
+
+/// The principal components of blocks of inputs, one block's after the other's; each block is
+/// brought to a total variance of 1, whatever its inputs' number and units.
+///
+/// ```
+/// use phalanx_rvm::{Block, Components, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// let x = Mat::from_fn(5, 100, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
+/// let blocks = [Block { inputs: 2, components: 1 }, Block { inputs: 3, components: 3 }];
+/// let components = Components::of(x.as_ref(), &blocks)?;
+/// let z = components.apply(x.as_ref())?;
+/// assert_eq!(z.shape(), (4, 100));
+/// assert!((z.row(0).squared_norm_l2() / 100.0 - 1.0).abs() < 1e-3);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
+pub struct Components {
+    blocks: Vec<Projection>,
+}
+
+impl Components {
+    /// Of the samples `x`, K×n, whose rows are made up of `blocks`.
+    pub fn of(x: MatRef<'_, f64>, blocks: &[Block]) -> Result<Self> {
+        let map = |part: &Principal| Projection::about(&part.mean, part.matrix.as_ref());
+        let blocks = of_blocks(x, blocks)?.iter().map(map).collect::<Result<_>>()?;
+        Ok(Self { blocks })
+    }
+
+    /// Puts the blocks' maps together, in the order of their inputs.
+    pub fn from_parts(blocks: Vec<Projection>) -> Self {
+        Self { blocks }
+    }
+
+    /// The maps of the blocks.
+    pub fn blocks(&self) -> &[Projection] {
+        &self.blocks
+    }
+
+    /// Length K of an input.
+    pub fn inputs(&self) -> usize {
+        // A map to no numbers at all may say that it reads any number of them.
+        self.blocks.iter().map(Projection::inputs).fold(0, usize::saturating_add)
+    }
+
+    /// How many components there are of all blocks.
+    pub fn outputs(&self) -> usize {
+        self.blocks.iter().map(Projection::outputs).sum()
+    }
+
+    /// The components of one input `x`, all finite. `single` is working memory.
+    pub fn apply_into(&self, x: &[f64], single: &mut Vec<f32>, z: &mut Vec<f64>) -> Result<()> {
+        check::length("inputs", self.inputs(), x.len())?;
+        z.clear();
+        let mut rest = x;
+        for block in &self.blocks {
+            let own;
+            (own, rest) = rest.split_at(block.inputs());
+            block.append(own, single, z)?;
+        }
+        Ok(())
+    }
+
+    /// The components of each column of `x`, K×n. The numbers are those of
+    /// [`apply_into`](Self::apply_into).
+    pub fn apply(&self, x: MatRef<'_, f64>) -> Result<Mat<f64>> {
+        let of = |(single, input): &mut (Vec<f32>, Vec<f64>), i: usize| {
+            input.clear();
+            input.extend(x.col(i).iter());
+            let mut z = Vec::with_capacity(self.outputs());
+            self.apply_into(input, single, &mut z)?;
+            Ok(z)
+        };
+        let columns = (0..x.ncols()).into_par_iter().map_init(Default::default, of);
+        let columns = columns.collect::<Result<Vec<_>>>()?;
+        Ok(Mat::from_fn(self.outputs(), x.ncols(), |k, i| columns[i][k]))
+    }
+}

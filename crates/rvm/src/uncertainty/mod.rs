@@ -1,0 +1,164 @@
+//! What a regression leaves open: several answers, with their weights.
+
+pub(crate) mod parts;
+mod principal_points;
+
+use faer::{Mat, MatRef};
+
+use crate::data::check;
+use crate::error::{Error, Result};
+use crate::uncertainty::parts::ConditionalDensityParts;
+use crate::uncertainty::principal_points::PrincipalPoints;
+
+/// The distribution of the targets given what a regression predicts.
+///
+/// Around a prediction ŷ(x) the targets are spread as the regression erred on the samples whose
+/// predictions are nearest to ŷ(x), a kernel estimate of the conditional density with the mean
+/// taken from the regression (Hyndman, Bashtannyk and Grunwald 1996). The samples must not be those
+/// that the regression was fitted to, whose errors are too small.
+///
+/// It is summed up by a few [`Hypothesis`]es: the prediction itself, and beside it principal points
+/// (Flury 1990), placed so that the truth is as near as possible to the nearest of them.
+///
+/// ```
+/// use phalanx_rvm::{ConditionalDensity, faer::Mat};
+///
+/// # fn main() -> phalanx_rvm::Result<()> {
+/// // A regression that always says 0 where the truth is near −1 or near 1.
+/// let predictions = Mat::zeros(1, 40);
+/// let truth = Mat::from_fn(1, 40, |_, t| if t % 4 == 0 { -1.0 } else { 1.0 } + 0.001 * t as f64);
+/// let density = ConditionalDensity::fit(predictions.as_ref(), truth.as_ref(), &[1.0], 40)?;
+/// let answers = density.hypotheses(&[0.0], 3)?;
+/// assert_eq!(answers[0].mean, [0.0], "the prediction comes first");
+/// assert!((answers[1].mean[0] - 1.0).abs() < 0.1 && (answers[2].mean[0] + 1.0).abs() < 0.1);
+/// assert!(answers[1].weight > 0.7);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(try_from = "ConditionalDensityParts", into = "ConditionalDensityParts")
+)]
+pub struct ConditionalDensity {
+    parts: ConditionalDensityParts,
+}
+
+/// One answer among several.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hypothesis {
+    /// The m targets.
+    pub mean: Vec<f64>,
+    /// How far the targets that this answer stands for stray from it: root mean square, for each
+    /// target.
+    pub std: Vec<f64>,
+    /// The share of the distribution that is nearer to this answer than to the others; the
+    /// weights sum to 1.
+    pub weight: f64,
+}
+
+impl ConditionalDensity {
+    /// From a regression's predictions, m×n, for n samples that it was not fitted to, and their
+    /// targets, m×n. Around a prediction the `neighbours` nearest of the samples speak.
+    ///
+    /// `units` says for each target what difference counts as 1 where distances are measured; all
+    /// above 0.
+    pub fn fit(
+        predictions: MatRef<'_, f64>,
+        targets: MatRef<'_, f64>,
+        units: &[f64],
+        neighbours: usize,
+    ) -> Result<Self> {
+        check::matrix("predictions", predictions)?;
+        check::matrix("targets", targets)?;
+        check::length("rows of targets", predictions.nrows(), targets.nrows())?;
+        check::length("columns (samples) of targets", predictions.ncols(), targets.ncols())?;
+        check::length("units", predictions.nrows(), units.len())?;
+        units.iter().try_for_each(|&unit| check::positive("unit", unit))?;
+        within("neighbours", neighbours, predictions.ncols(), "from 1 to the number of samples")?;
+        let flat = |of: MatRef<'_, f64>| of.col_iter().flat_map(|c| c.iter().copied()).collect();
+        Self::from_parts(ConditionalDensityParts {
+            outputs: units.len(),
+            neighbours,
+            units: units.to_vec(),
+            predictions: flat(predictions),
+            residuals: flat((targets - predictions).as_ref()),
+        })
+    }
+
+    /// Length m of a target vector.
+    pub fn outputs(&self) -> usize {
+        self.parts.outputs
+    }
+
+    /// At most `count` hypotheses (at least 1) around a regression's `prediction` (length m): the
+    /// prediction first, then the others by falling weight. Fewer where the errors nearby differ
+    /// in fewer ways.
+    pub fn hypotheses(&self, prediction: &[f64], count: usize) -> Result<Vec<Hypothesis>> {
+        check::length("prediction", self.outputs(), prediction.len())?;
+        if let Some(row) = prediction.iter().position(|&v| !check::usable(v)) {
+            let value = prediction[row];
+            return Err(Error::BadValue { what: "prediction", row, column: 0, value });
+        }
+        within("count", count, self.parts.neighbours, "from 1 to the number of neighbours")?;
+        let residuals = self.residuals_near(prediction);
+        let points = PrincipalPoints::of(&residuals, count)?;
+        let mut hypotheses: Vec<Hypothesis> = (0..points.count())
+            .filter_map(|point| self.hypothesis(prediction, &residuals, &points, point))
+            .collect();
+        hypotheses[1..].sort_by(|a, b| b.weight.total_cmp(&a.weight));
+        Ok(hypotheses)
+    }
+
+    /// The residuals, in their units, of the samples whose predictions are nearest to this one,
+    /// m×neighbours.
+    fn residuals_near(&self, prediction: &[f64]) -> Mat<f64> {
+        let ConditionalDensityParts { outputs, neighbours, units, predictions, residuals } =
+            &self.parts;
+        let distance = |sample: &[f64]| -> f64 {
+            let differences = sample.iter().zip(prediction).zip(units);
+            differences.map(|((a, b), unit)| ((a - b) / unit).powi(2)).sum()
+        };
+        let samples = predictions.chunks_exact(*outputs).enumerate();
+        let mut order: Vec<(f64, usize)> = samples.map(|(i, p)| (distance(p), i)).collect();
+        let nearer = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        order.select_nth_unstable_by(neighbours - 1, nearer);
+        Mat::from_fn(*outputs, *neighbours, |j, k| residuals[order[k].1 * outputs + j] / units[j])
+    }
+
+    /// One of the points as a hypothesis; nothing if no residual is nearest to it, unless it is the
+    /// prediction itself.
+    fn hypothesis(
+        &self,
+        prediction: &[f64],
+        residuals: &Mat<f64>,
+        points: &PrincipalPoints,
+        point: usize,
+    ) -> Option<Hypothesis> {
+        let members: Vec<usize> =
+            (0..residuals.ncols()).filter(|&k| points.nearest[k] == point).collect();
+        if members.is_empty() && point > 0 {
+            return None;
+        }
+        let centre = points.centres.col_as_slice(point);
+        let units = &self.parts.units;
+        let spread = |j: usize| {
+            let squares = members.iter().map(|&k| (residuals[(j, k)] - centre[j]).powi(2));
+            (squares.sum::<f64>() / members.len().max(1) as f64).sqrt()
+        };
+        Some(Hypothesis {
+            mean: (0..units.len()).map(|j| prediction[j] + units[j] * centre[j]).collect(),
+            std: (0..units.len()).map(|j| units[j] * spread(j)).collect(),
+            weight: members.len() as f64 / residuals.ncols() as f64,
+        })
+    }
+}
+
+/// Refuses a number that is zero or above the `most`.
+fn within(name: &'static str, asked: usize, most: usize, requirement: &'static str) -> Result<()> {
+    if (1..=most).contains(&asked) {
+        return Ok(());
+    }
+    Err(Error::Parameter { name, value: asked as f64, requirement })
+}
