@@ -195,7 +195,10 @@ fn difference(one: &Pose, other: &Pose) -> f64 {
 fn hypothesis(found: &phalanx_rvm::Hypothesis) -> Hypothesis {
     Hypothesis {
         pose: Pose(std::array::from_fn(|dof| found.mean[dof])),
-        std: std::array::from_fn(|dof| found.std[dof]),
+        // 0 says in an estimate that a number was not learnt.
+        std: std::array::from_fn(
+            |dof| if found.std[dof].is_finite() { found.std[dof] } else { 0.0 },
+        ),
         weight: found.weight,
     }
 }

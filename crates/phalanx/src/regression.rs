@@ -84,6 +84,9 @@ impl Regression {
             Self::Joint(model) => model.predict_into(x, scratch, mean, std),
             Self::Projected(projected) => projected.predict_into(x, scratch, mean, std),
             Self::Network(own) => own.predict_into(x, scratch, mean, std),
-        }
+        }?;
+        // 0 says in an estimate that a number was not learnt.
+        std.iter_mut().filter(|std| std.is_infinite()).for_each(|std| *std = 0.0);
+        Ok(())
     }
 }

@@ -58,7 +58,11 @@ pub enum Error {
         available: usize,
     },
     /// The square matrix over all basis columns would not fit an ordinary computer's memory.
-    #[error("{columns} basis columns; this dense solver takes at most {limit}")]
+    #[error(
+        "{columns} basis columns, one per sample (Gaussian kernel) or input (linear kernel); dense \
+         solvers take at most {limit}: use fewer, or fit NystromRidge, which takes any number of \
+         samples"
+    )]
     TooManyColumns {
         /// Basis columns of the problem.
         columns: usize,

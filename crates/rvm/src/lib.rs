@@ -17,6 +17,7 @@ pub use basis::kernel::{Kernel, Width};
 pub use basis::spec::{Columns, Pilot};
 pub use data::permutation::random_subset;
 pub use data::scaler::Standardiser;
+pub use data::size::ProblemSize;
 pub use error::{Error, Result};
 pub use faer;
 pub use mlp::network::{Network, NetworkParts};

@@ -4,8 +4,12 @@ use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
 use crate::data::check;
+use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::linalg;
+
+/// Most basis columns of a dense solver: one square matrix over them takes 0.8 GB.
+const MOST_COLUMNS: usize = 10_000;
 
 /// Basis functions f(x) of de Campos and Murray (2006), section 4, on standardised inputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,6 +62,24 @@ impl Kernel {
             Self::Gaussian(width) => width.check(),
         }
     }
+
+    /// Number of basis columns over all inputs and samples, at most; an error where a dense solver
+    /// does not take as many.
+    pub(crate) fn columns(self, size: ProblemSize) -> Result<usize> {
+        let columns = match self {
+            Self::Linear => size.inputs,
+            Self::Gaussian(_) => size.samples,
+        };
+        limited(columns)
+    }
+}
+
+/// Refuses more columns than a dense solver takes.
+pub(crate) fn limited(columns: usize) -> Result<usize> {
+    if columns > MOST_COLUMNS {
+        return Err(Error::TooManyColumns { columns, limit: MOST_COLUMNS });
+    }
+    Ok(columns)
 }
 
 /// Gaussian kernel between all pairs of columns of `z` (features × samples): exactly symmetric,

@@ -12,8 +12,6 @@ use crate::error::{Error, Result};
 use crate::linalg;
 use crate::model::parts::Basis;
 
-/// Most basis columns of a dense solver: one square matrix over them takes 0.8 GB.
-const MOST_COLUMNS: usize = 10_000;
 /// Origins are multiples of this. They need only be near the columns' means, and coarse ones do
 /// not depend on the last bits of a machine's exponential.
 const ORIGIN_STEP: f64 = 1.0 / (1 << 20) as f64;
@@ -112,13 +110,10 @@ impl Columns {
         centres: &[usize],
     ) -> Result<Self> {
         kernel.check()?;
-        let size = match kernel {
+        let size = kernel::limited(match kernel {
             Kernel::Gaussian(_) if !features.is_empty() => centres.len(),
             _ => features.len(),
-        };
-        if size > MOST_COLUMNS {
-            return Err(Error::TooManyColumns { columns: size, limit: MOST_COLUMNS });
-        }
+        })?;
         let gaussians = match kernel {
             Kernel::Gaussian(width) if !features.is_empty() => Some(Gaussians {
                 beta: width.magnitude(features.len()),

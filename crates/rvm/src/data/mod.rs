@@ -4,3 +4,4 @@ pub(crate) mod check;
 pub(crate) mod permutation;
 pub(crate) mod problem;
 pub(crate) mod scaler;
+pub(crate) mod size;

@@ -31,8 +31,8 @@ use crate::transform::affine_map::Projection;
 /// proportions: put them on one scale first, as [`Components`](crate::Components) does.
 ///
 /// One sample in 16, drawn at random, is not learnt from; the standard deviations are the root mean square errors of
-/// these, one for each target, and the trace holds their mean absolute error, in standardised units,
-/// after each epoch.
+/// these, one for each target (with fewer than 128 samples, the targets' own deviations), and the
+/// trace holds their mean absolute error, in standardised units, after each epoch.
 ///
 /// For targets that depend on many inputs at once, and samples that go into the tens of thousands.
 ///
@@ -98,7 +98,7 @@ impl Perceptron {
         y: MatRef<'_, f64>,
         observe: &mut dyn FnMut(usize),
     ) -> Result<FittedNetwork> {
-        self.check()?;
+        self.check_settings()?;
         check_inputs(x)?;
         let targets = Standardiser::fit(y)?;
         check::length("columns (samples) of y", x.ncols(), y.ncols())?;
@@ -123,7 +123,7 @@ impl Perceptron {
         Ok(FittedNetwork { network, report: Report::new(vec![trace], None) })
     }
 
-    fn check(&self) -> Result<()> {
+    fn check_settings(&self) -> Result<()> {
         check::positive("rate", self.rate)?;
         for (name, count) in [("epochs", self.epochs), ("batch", self.batch)] {
             if count == 0 {

@@ -3,6 +3,7 @@
 use crate::data::check;
 use crate::data::scaler::Standardiser;
 use crate::error::{Error, Result};
+use crate::model::parts::known;
 use crate::model::predict::Scratch;
 use crate::transform::affine_map::Projection;
 
@@ -25,7 +26,7 @@ pub struct NetworkParts {
     pub mean: Vec<f64>,
     /// How much of a target one standardised unit is; 0 of one that does not vary.
     pub scale: Vec<f64>,
-    /// The standard deviation of each target's prediction.
+    /// The standard deviation of each target's prediction; 0 where the samples do not tell it.
     pub std: Vec<f64>,
 }
 
@@ -63,7 +64,8 @@ impl Network {
         self.parts.std.len()
     }
 
-    /// Mean and standard deviation of the m targets of one input `x` (length K), all finite.
+    /// Mean and standard deviation of the m targets of one input `x` (length K), all finite. The
+    /// deviation is infinite where the samples do not tell it.
     pub fn predict_into(
         &self,
         x: &[f64],
@@ -86,7 +88,7 @@ impl Network {
         for (value, (z, (mean, scale))) in mean.iter_mut().zip(hidden.iter().zip(targets)) {
             *value = mean + scale * z;
         }
-        std.copy_from_slice(&self.parts.std);
+        std.iter_mut().zip(&self.parts.std).for_each(|(std, &own)| *std = known(own));
         Ok(())
     }
 }

@@ -10,6 +10,8 @@ use crate::mlp::layers::{Layers, Pass};
 
 /// Of so many samples one is held out: it tells how far predictions are off.
 const HELD_OUT: usize = 16;
+/// Fewer held-out samples tell too little of that: the relative error of a deviation is 1/√(2n).
+const LEAST_HELD_OUT: usize = 8;
 
 /// The samples.
 pub(super) struct Samples<'a> {
@@ -113,11 +115,12 @@ impl<'a> Samples<'a> {
         differences.iter().map(|d| f64::from(d.abs())).sum::<f64>() / differences.len() as f64
     }
 
-    /// The root mean square error of each target, in its own unit; 0 of those that do not vary.
+    /// The root mean square error of each target, in its own unit, or the target's own deviation
+    /// where too few samples are held out; 0 of those that do not vary.
     pub(super) fn deviations(&self, layers: &Layers, targets: &Standardiser) -> Vec<f64> {
-        let mut deviations = vec![0.0; targets.scale().len()];
+        let mut deviations = targets.scale().to_vec();
         let varying = targets.varying();
-        if varying.is_empty() {
+        if varying.is_empty() || self.held_out.len() < LEAST_HELD_OUT {
             return deviations;
         }
         let differences = self.differences(layers);

@@ -28,7 +28,7 @@ impl Model {
             format!("const {name}: [{kind}; {}] = [{}];\n", values.len(), values.join(", "))
         });
         let constants = constants.collect::<Vec<_>>().concat();
-        let noise = numbers(self.noise()).join(", ");
+        let noise = numbers(&self.noise()).join(", ");
         let (inputs, outputs) = (self.inputs(), self.outputs());
         let body = if self.parts().column_means.is_empty() {
             "    let _ = x;\n    BIAS\n".to_owned()
@@ -49,7 +49,7 @@ impl Model {
             "// A regressor exported by phalanx-rvm.\n\n\
              /// Length of an input.\npub const INPUTS: usize = {inputs};\n\
              /// Length of a prediction.\npub const OUTPUTS: usize = {outputs};\n\
-             /// Standard deviation of each target's noise.\n\
+             /// Standard deviation of each target's noise; infinite where it is not known.\n\
              pub const NOISE: [f64; OUTPUTS] = [{noise}];\n\n{constants}{gaussian}\n\
              /// Mean of the targets at one input.\n\
              pub fn predict(x: &[f64; INPUTS]) -> [f64; OUTPUTS] {{\n{body}}}\n"
@@ -140,7 +140,11 @@ struct Table {
 
 /// The shortest decimals that are read back as these numbers.
 fn numbers(values: &[f64]) -> Vec<String> {
-    values.iter().map(|value| format!("{value:e}")).collect()
+    let literal = |value: &f64| match value.is_finite() {
+        true => format!("{value:e}"),
+        false => "f64::INFINITY".to_owned(), // a noise that is not known; C has no table of it
+    };
+    values.iter().map(literal).collect()
 }
 
 const RUST_BODY: &str = "    let mut y = BIAS;

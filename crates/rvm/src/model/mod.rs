@@ -15,7 +15,8 @@ use crate::model::parts::{Basis, ModelParts};
 ///
 /// Every fitter of this crate makes one: linear or Gaussian basis columns, weights, the scaling of
 /// inputs and targets, and the posterior. If every column was pruned it predicts the mean, with
-/// the targets' own spread as its standard deviation.
+/// the targets' own spread as its standard deviation. Of a target that does not vary in the samples,
+/// or of a single sample, no deviation can be known: it is infinite, never 0.
 ///
 /// ```
 /// use phalanx_rvm::{Model, Scratch, Tipping, faer::Mat};
@@ -103,9 +104,10 @@ impl Model {
         Some(self.parts.feature_scales.iter().map(|scale| scale * deviation).collect())
     }
 
-    /// Standard deviation of each target's noise, in its units.
-    pub fn noise(&self) -> &[f64] {
-        &self.parts.noise
+    /// Standard deviation of each target's noise, in its units; infinite where the samples do not
+    /// tell it: of a target that does not vary, and of a single sample.
+    pub fn noise(&self) -> Vec<f64> {
+        self.parts.known_noise().collect()
     }
 }
 

@@ -29,7 +29,7 @@ pub struct ModelParts {
     pub weights: Vec<f64>,
     /// ȳ, the training mean of each target.
     pub bias: Vec<f64>,
-    /// Standard deviation of each target's noise, in its units.
+    /// Standard deviation of each target's noise, in its units; 0 where the samples do not tell it.
     pub noise: Vec<f64>,
     /// How uncertain the function is, relative to the noise.
     pub posterior: Posterior,
@@ -81,6 +81,11 @@ pub struct Factor {
 }
 
 impl ModelParts {
+    /// The noise as predictions take it: infinite where the samples do not tell it.
+    pub(crate) fn known_noise(&self) -> impl Iterator<Item = f64> + '_ {
+        self.noise.iter().map(|&noise| known(noise))
+    }
+
     /// Number of basis columns p.
     pub(crate) fn size(&self) -> usize {
         match &self.basis {
@@ -144,6 +149,12 @@ impl Factor {
         )?;
         numbers("posterior", &self.packed, n.checked_mul(n + 1).map(|twice| twice / 2))
     }
+}
+
+/// A deviation, or infinity in place of 0: samples that do not differ, or a single one, tell nothing
+/// of how far others may lie.
+pub(crate) fn known(deviation: f64) -> f64 {
+    if deviation > 0.0 { deviation } else { f64::INFINITY }
 }
 
 fn fault(field: &'static str, problem: &'static str, present: bool) -> Result<()> {

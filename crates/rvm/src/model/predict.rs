@@ -67,7 +67,8 @@ impl Model {
     }
 
     /// Mean and standard deviation of the m targets of one sample `x` (length K), in the targets'
-    /// units. The variance is that of the noise plus that of the function, φᵀΣφ.
+    /// units. The variance is that of the noise plus that of the function, φᵀΣφ; the deviation is
+    /// infinite where the [noise](Self::noise) is not known.
     pub fn predict_into(
         &self,
         x: &[f64],
@@ -150,7 +151,7 @@ impl Model {
 
     /// Standard deviations at the columns in `scratch.phi`.
     fn deviations(&self, scratch: &mut Scratch, std: &mut [f64]) {
-        let noise = &self.parts.noise;
+        let noise = self.parts.known_noise();
         match &self.parts.posterior {
             Posterior::Weights(factors) if factors.len() == 1 => {
                 let multiple = (1.0 + factors[0].spread(scratch)).sqrt();

@@ -8,6 +8,7 @@ use crate::basis::kernel::{Kernel, Width};
 use crate::basis::normal_equations;
 use crate::data::check;
 use crate::data::problem::Problem;
+use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::linalg;
 use crate::model::parts::{Factor, Posterior};
@@ -93,6 +94,14 @@ impl KernelRidge {
         let model = normal_equations::model(&design, &kept, weights, &dual.noise(), posterior);
         let trace = Trace { converged: true, objective: errors };
         Ok(Fit { model, report: Report::new(vec![trace], Some(lambda)) })
+    }
+
+    /// Refuses settings out of range, and problems too large for this fitter. What
+    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    pub fn check(&self, size: ProblemSize) -> Result<()> {
+        self.grid()?;
+        self.width.check()?;
+        Kernel::Gaussian(self.width).columns(size).map(drop)
     }
 
     fn grid(&self) -> Result<&[f64]> {

@@ -12,6 +12,7 @@ use crate::basis::normal_equations::Equations;
 use crate::basis::spec::Columns;
 use crate::data::check;
 use crate::data::problem::Problem;
+use crate::data::size::ProblemSize;
 use crate::error::Result;
 use crate::linalg;
 use crate::model::report::{Fit, Report, Trace};
@@ -61,6 +62,14 @@ impl Ridge {
         check::positive("lambda", self.lambda)?;
         let problem = Problem::new(x, y)?;
         self.solve(&Design::full(&problem, self.kernel)?)
+    }
+
+    /// Refuses settings out of range, and problems too large for this fitter. What
+    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    pub fn check(&self, size: ProblemSize) -> Result<()> {
+        check::positive("lambda", self.lambda)?;
+        self.kernel.check()?;
+        self.kernel.columns(size).map(drop)
     }
 
     /// Fits sums over columns of the same kernel.

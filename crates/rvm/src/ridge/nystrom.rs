@@ -9,6 +9,7 @@ use crate::basis::spec::Columns;
 use crate::data::check;
 use crate::data::permutation::random_subset;
 use crate::data::problem::Problem;
+use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::linalg;
 use crate::model::Model;
@@ -16,8 +17,8 @@ use crate::model::parts::{Factor, Posterior};
 use crate::model::report::{Fit, Report, Trace};
 use crate::ridge::penalised;
 use crate::ridge::penalised::Penalised;
-use crate::stream::Sums;
 use crate::stream::summed::Summed;
+use crate::stream::{self, Sums};
 
 /// Added to the kernel's diagonal of ones. Where the centres' Gaussians depend on each other,
 /// whitening divides the rounding of G by this: a smaller one leaves small λ unsolvable for many
@@ -136,6 +137,14 @@ impl Nystrom {
         self.fit_sums(&columns, &sums)
     }
 
+    /// Refuses settings out of range, and more samples than one sum takes. What
+    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    pub fn check(&self, size: ProblemSize) -> Result<()> {
+        self.grid()?;
+        self.width.check()?;
+        stream::room(size.samples)
+    }
+
     /// Fits sums over Gaussian columns of the same width.
     pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
         let grid = self.grid()?;
@@ -196,7 +205,7 @@ impl<'a> Whitened<'a> {
         let (_, used) = solved.posterior();
         let (samples, targets) =
             (self.equations.samples() as f64, self.correlations.ncols() as f64);
-        let left = samples - 1.0 - used;
+        let left = penalised::freedom(self.equations, used);
         if left <= 0.0 {
             return f64::INFINITY;
         }
@@ -224,9 +233,9 @@ impl<'a> Whitened<'a> {
             }
             Deviation::CrossValidated => {
                 let samples = self.equations.samples() as f64;
-                let left = (samples / (samples - 1.0 - used).max(1.0)).sqrt();
-                for noise in &mut noise {
-                    *noise *= left;
+                let left = penalised::freedom(self.equations, used);
+                if left >= 1.0 {
+                    noise.iter_mut().for_each(|noise| *noise *= (samples / left).sqrt());
                 }
                 Factor { columns: Vec::new(), packed: Vec::new() }
             }

@@ -76,16 +76,22 @@ impl Penalised {
 }
 
 /// Each target's noise deviation: its residuals over the degrees of freedom that the penalised
-/// fit, which uses `used`, and the bias leave.
+/// fit, which uses `used`, and the bias leave. Where not even one is left the residuals say nothing,
+/// and the noise is taken for the whole deviation of the target, which is 1.
 pub(crate) fn noise(
     equations: &dyn Equations,
     kept: &[usize],
     weights: MatRef<'_, f64>,
     used: f64,
 ) -> Vec<f64> {
-    let left = (equations.samples() as f64 - 1.0 - used).max(1.0);
-    let residuals = equations.residuals(kept, weights);
-    residuals.into_iter().map(|squared| (squared / left).sqrt()).collect()
+    let left = freedom(equations, used);
+    let residuals = equations.residuals(kept, weights).into_iter();
+    residuals.map(|squared| if left < 1.0 { 1.0 } else { (squared / left).sqrt() }).collect()
+}
+
+/// Degrees of freedom that a fit which uses `used`, and the bias, leave.
+pub(crate) fn freedom(equations: &dyn Equations, used: f64) -> f64 {
+    equations.samples() as f64 - 1.0 - used
 }
 
 impl Factor {

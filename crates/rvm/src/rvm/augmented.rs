@@ -7,7 +7,7 @@ use crate::data::scaler::Standardiser;
 use crate::error::{Error, Result};
 use crate::linalg::axpy;
 use crate::model::Model;
-use crate::model::parts::{Basis, Factor, Posterior};
+use crate::model::parts::{Basis, Factor, Posterior, known};
 use crate::model::predict::Scratch;
 
 /// A sparse Gaussian model with the predictive variance of RVM* (Rasmussen and Quiñonero-Candela
@@ -111,6 +111,10 @@ impl Healed {
         let shared: Vec<f64> =
             self.phi.col_iter().map(|column| dot(column.iter(), &star)).collect();
         for (j, std) in std.iter_mut().enumerate() {
+            if parts.noise[j] == 0.0 {
+                *std = known(0.0);
+                continue;
+            }
             let factor = &factors[j % factors.len()];
             let by_star = factor.times(&shared);
             let by_sample = factor.times(scratch.columns());
@@ -118,10 +122,9 @@ impl Healed {
             let plain: f64 = by_sample.iter().map(|v| v * v).sum();
             let left = (energy - by_star.iter().map(|v| v * v).sum::<f64>()).max(0.0);
             let error = at_itself - dot(by_sample.iter(), &by_star);
-            // σ² e²/(α + s) with α = σ²/v, which stays finite where σ is 0.
+            // σ² e²/(α + s) with α = σ²/v.
             let added = self.variance[j] * error * error / (noise + self.variance[j] * left);
-            let added = if added.is_finite() { noise * added } else { 0.0 };
-            *std = (noise * (1.0 + plain) + added).sqrt();
+            *std = (noise * (1.0 + plain + added)).sqrt();
         }
         Ok(())
     }

@@ -8,6 +8,7 @@ use crate::basis::normal_equations;
 use crate::basis::normal_equations::Equations;
 use crate::basis::spec::Columns;
 use crate::data::problem::Problem;
+use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::model::parts::{Factor, Posterior};
 use crate::model::report::{Fit, Progress, Report};
@@ -81,6 +82,14 @@ impl MultivariateRvm {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
         self.fit_observed(x, y, &|_| ())
+    }
+
+    /// Refuses settings out of range, and problems too large for this fitter. What
+    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    pub fn check(&self, size: ProblemSize) -> Result<()> {
+        self.ascent()?;
+        self.kernel.check()?;
+        self.kernel.columns(size).map(drop)
     }
 
     /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step.

@@ -8,6 +8,7 @@ use crate::basis::kernel::{Kernel, Width};
 use crate::basis::normal_equations;
 use crate::basis::normal_equations::Equations;
 use crate::data::problem::Problem;
+use crate::data::size::ProblemSize;
 use crate::error::Result;
 use crate::model::Model;
 use crate::model::parts::{Factor, Posterior};
@@ -77,6 +78,14 @@ impl Tipping {
         self.fit_observed(x, y, &|_| ())
     }
 
+    /// Refuses settings out of range, and problems too large for this fitter. What
+    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    pub fn check(&self, size: ProblemSize) -> Result<()> {
+        self.ascent()?;
+        self.kernel.check()?;
+        self.kernel.columns(size).map(drop)
+    }
+
     /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step. Targets are fitted in
     /// parallel, so it may be called by several threads at once.
     ///
@@ -101,12 +110,9 @@ impl Tipping {
         y: MatRef<'_, f64>,
         observe: &(dyn Fn(Progress) + Sync),
     ) -> Result<Fit> {
-        let &Self { kernel, noise_floor, tolerance, price, restarts, max_iterations } = self;
-        let ascent =
-            Ascent { noise_floor, price, tolerance, max_iterations, restarts, most: usize::MAX };
-        ascent.check()?;
+        let ascent = self.ascent()?;
         let problem = Problem::new(x, y)?;
-        let design = Design::full(&problem, kernel)?;
+        let design = Design::full(&problem, self.kernel)?;
         let (gram, correlations) = (design.gram(), design.correlations());
         let energies = design.energies();
         let rows: Vec<(Row, Trace)> = (0..energies.len())
@@ -129,6 +135,14 @@ impl Tipping {
             .collect::<Result<_>>()?;
         let (rows, traces): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
         Ok(Fit { model: join(&design, rows), report: Report::new(traces, None) })
+    }
+
+    fn ascent(&self) -> Result<Ascent> {
+        let &Self { noise_floor, tolerance, price, restarts, max_iterations, .. } = self;
+        let most = usize::MAX;
+        let ascent = Ascent { noise_floor, price, tolerance, max_iterations, restarts, most };
+        ascent.check()?;
+        Ok(ascent)
     }
 }
 

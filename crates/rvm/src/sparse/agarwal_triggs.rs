@@ -8,6 +8,7 @@ use crate::basis::normal_equations::Equations;
 use crate::basis::spec::Columns;
 use crate::data::check;
 use crate::data::problem::Problem;
+use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::linalg;
 use crate::model::report::{Fit, Report, Trace};
@@ -99,6 +100,13 @@ impl Bridges {
         self.solve(&Design::full(&problem, self.kernel)?)
     }
 
+    /// Refuses settings out of range, and problems too large for this fitter. What
+    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    pub fn check(&self, size: ProblemSize) -> Result<()> {
+        self.kernel.check()?;
+        self.check_settings(self.kernel.columns(size)?)
+    }
+
     /// Fits sums over columns of the same kernel.
     pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
         columns.check_kernel(self.kernel)?;
@@ -114,7 +122,7 @@ impl Bridges {
     /// Runs the bridges over all columns. Halving ν only after the descent would keep
     /// columns that too strong a prior chose.
     fn select(&self, equations: &dyn Equations) -> Result<Selection> {
-        self.check(equations.columns().size())?;
+        self.check_settings(equations.columns().size())?;
         let start = Bridge::start(equations, self.lambda)?;
         let mut nu = self.nu;
         let mut selection = self.descend(start.clone(), nu)?;
@@ -152,7 +160,7 @@ impl Bridges {
         Ok(Selection { kept: bridge.kept, nu, solved, trace })
     }
 
-    fn check(&self, available: usize) -> Result<()> {
+    fn check_settings(&self, available: usize) -> Result<()> {
         check::positive("nu", self.nu)?;
         check::positive("lambda", self.lambda)?;
         check::positive("tolerance", self.tolerance)?;

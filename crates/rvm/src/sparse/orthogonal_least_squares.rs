@@ -8,6 +8,7 @@ use crate::basis::normal_equations::Equations;
 use crate::basis::spec::Columns;
 use crate::data::check;
 use crate::data::problem::Problem;
+use crate::data::size::ProblemSize;
 use crate::error::Result;
 use crate::linalg;
 use crate::model::report::{Fit, Report, Trace};
@@ -67,6 +68,13 @@ impl ForwardSelection {
         self.solve(&Design::full(&problem, self.kernel)?)
     }
 
+    /// Refuses settings out of range, and problems too large for this fitter. What
+    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    pub fn check(&self, size: ProblemSize) -> Result<()> {
+        self.kernel.check()?;
+        self.check_settings(self.kernel.columns(size)?)
+    }
+
     /// Fits sums over columns of the same kernel.
     pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
         columns.check_kernel(self.kernel)?;
@@ -74,8 +82,7 @@ impl ForwardSelection {
     }
 
     fn solve(&self, equations: &dyn Equations) -> Result<Fit> {
-        check::positive("lambda", self.lambda)?;
-        check::count(self.count, equations.columns().size())?;
+        self.check_settings(equations.columns().size())?;
         let correlations = equations.correlations();
         let start = Search::new(equations, correlations.as_ref(), self.lambda);
         let mut products = Products::new(equations);
@@ -88,6 +95,11 @@ impl ForwardSelection {
         let trace = Trace { converged: kept.len() == self.count, objective };
         let model = solved.model(equations, &kept);
         Ok(Fit { model, report: Report::new(vec![trace], None) })
+    }
+
+    fn check_settings(&self, available: usize) -> Result<()> {
+        check::positive("lambda", self.lambda)?;
+        check::count(self.count, available)
     }
 
     /// Adds one column after another; returns them and the error after each.

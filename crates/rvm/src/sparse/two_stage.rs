@@ -7,6 +7,7 @@ use crate::basis::kernel::{Kernel, Width};
 use crate::basis::normal_equations::Equations;
 use crate::basis::spec::Columns;
 use crate::data::problem::Problem;
+use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::model::report::{Fit, Report};
 use crate::sparse::agarwal_triggs::{Bridges, Stop};
@@ -62,6 +63,13 @@ impl Cascade {
         let first = self.first(&Design::full(&problem, Kernel::Linear)?)?;
         let features = first.model.selected_features().to_vec();
         self.second(first, &Design::new(&problem, features, Kernel::Gaussian(self.width))?)
+    }
+
+    /// Refuses settings out of range, and problems too large for this fitter. What
+    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    pub fn check(&self, size: ProblemSize) -> Result<()> {
+        self.bridges(Kernel::Linear, self.features).check(size)?;
+        self.bridges(Kernel::Gaussian(self.width), self.samples).check(size)
     }
 
     /// The first of two passes over a stream: the fit over linear columns, whose

@@ -113,12 +113,16 @@ impl Sums {
     }
 
     fn check_room(&self, more: usize) -> Result<()> {
-        let samples = self.samples().saturating_add(more);
-        if samples <= MOST_SAMPLES {
-            return Ok(());
-        }
-        Err(Error::TooManySamples { samples, limit: MOST_SAMPLES })
+        room(self.samples().saturating_add(more))
     }
+}
+
+/// Refuses more samples than one sum takes.
+pub(crate) fn room(samples: usize) -> Result<()> {
+    if samples <= MOST_SAMPLES {
+        return Ok(());
+    }
+    Err(Error::TooManySamples { samples, limit: MOST_SAMPLES })
 }
 
 /// Cuts a packed lower triangle over `all` columns into chunks of whole columns, each with the

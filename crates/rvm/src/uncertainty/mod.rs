@@ -7,6 +7,7 @@ use faer::{Mat, MatRef};
 
 use crate::data::check;
 use crate::error::{Error, Result};
+use crate::model::parts::known;
 use crate::uncertainty::parts::ConditionalDensityParts;
 use crate::uncertainty::principal_points::PrincipalPoints;
 
@@ -51,7 +52,8 @@ pub struct Hypothesis {
     /// The m targets.
     pub mean: Vec<f64>,
     /// How far the targets that this answer stands for stray from it: root mean square, for each
-    /// target.
+    /// target. Where they are too few to tell, how far all errors nearby stray from the prediction;
+    /// infinite where there are none.
     pub std: Vec<f64>,
     /// The share of the distribution that is nearer to this answer than to the others; the
     /// weights sum to 1.
@@ -143,9 +145,17 @@ impl ConditionalDensity {
         }
         let centre = points.centres.col_as_slice(point);
         let units = &self.parts.units;
+        let root_mean_square = |values: &mut dyn Iterator<Item = f64>, count: usize| {
+            (values.map(|v| v * v).sum::<f64>() / count as f64).sqrt()
+        };
         let spread = |j: usize| {
-            let squares = members.iter().map(|&k| (residuals[(j, k)] - centre[j]).powi(2));
-            (squares.sum::<f64>() / members.len().max(1) as f64).sqrt()
+            let mut own = members.iter().map(|&k| residuals[(j, k)] - centre[j]);
+            let own = root_mean_square(&mut own, members.len().max(1));
+            if members.len() > 1 && own > 0.0 {
+                return own;
+            }
+            let mut all = residuals.row(j).iter().copied();
+            known(root_mean_square(&mut all, residuals.ncols()))
         };
         Some(Hypothesis {
             mean: (0..units.len()).map(|j| prediction[j] + units[j] * centre[j]).collect(),

@@ -2,8 +2,8 @@
 
 use faer::Mat;
 use phalanx_rvm::{
-    Bridges, Cascade, Error, ForwardSelection, Kernel, KernelRidge, Lambda, MultivariateRvm,
-    Nystrom, Penalty, Ridge, Standardiser, Stop, Tipping, Width,
+    Bridges, Cascade, Error, ForwardSelection, Kernel, KernelRidge, Lambda, LearntWidths,
+    MultivariateRvm, Nystrom, Penalty, ProblemSize, Ridge, Standardiser, Stop, Tipping, Width,
 };
 use proptest::prelude::*;
 
@@ -36,8 +36,9 @@ proptest! {
                 Err(error) => return Err(TestCaseError::fail(format!("{name}: {error}"))),
             };
             let (mean, std) = model.predict_with_std(x.as_ref())?;
-            let fine = mean.norm_max().is_finite() && std.norm_max().is_finite();
-            prop_assert!(fine, "{name}");
+            prop_assert!(mean.norm_max().is_finite(), "{name}");
+            // Infinite where a target does not vary.
+            prop_assert!(std.col_iter().all(|c| c.iter().all(|&v| v > 0.0)), "{name}");
         }
     }
 }
@@ -88,8 +89,8 @@ fn constant_targets_are_met_exactly_and_constant_inputs_ignored() {
         assert!(!model.selected_features().contains(&1), "{name}");
         let (mean, std) = model.predict_with_std(x.as_ref()).unwrap();
         assert!(mean.row(2).iter().all(|&v| v == 0.1), "{name}");
-        assert!(std.row(2).iter().all(|&v| v == 0.0), "{name}");
-        assert!(std.row(0).iter().all(|&v| v > 0.0), "{name}");
+        assert!(std.row(2).iter().all(|&v| v == f64::INFINITY), "{name}");
+        assert!(std.row(0).iter().all(|&v| v > 0.0 && v.is_finite()), "{name}");
     }
 }
 
@@ -148,6 +149,36 @@ fn hyper_parameters_out_of_range_are_named() {
     }
     let cascade = Cascade { features: Stop::Count(5), ..Cascade::default() };
     assert_eq!(cascade.fit(x, y).unwrap_err(), Error::Count { asked: 5, available: 4 });
+}
+
+/// What can be refused before there are data is refused as the fit itself would.
+#[test]
+fn sizes_are_refused_beforehand() {
+    let samples = 10_001;
+    let x = Mat::from_fn(1, samples, |_, t| t as f64);
+    let size = ProblemSize::of(x.as_ref(), x.as_ref());
+    let limit = 10_000;
+    let too_many = Err(Error::TooManyColumns { columns: samples, limit });
+    assert_eq!(KernelRidge::default().check(size), too_many);
+    assert_eq!(Tipping::default().check(size), too_many);
+    assert_eq!(MultivariateRvm::default().check(size), too_many);
+    assert_eq!(LearntWidths::default().check(size), too_many);
+    assert_eq!(Bridges::default().check(size), too_many);
+    assert_eq!(ForwardSelection::default().check(size), too_many);
+    assert_eq!(Cascade::default().check(size), too_many);
+    let found = KernelRidge::default().fit(x.as_ref(), x.as_ref());
+    assert_eq!(found.map(drop), too_many);
+    assert_eq!(Nystrom::default().check(size), Ok(()));
+    assert_eq!(Ridge::default().check(size), Ok(()));
+    let wide = ProblemSize { samples: 3, inputs: 12_000, outputs: 1 };
+    let too_many = Err(Error::TooManyColumns { columns: 12_000, limit });
+    assert_eq!(Ridge::default().check(wide), too_many);
+    assert_eq!(Cascade::default().check(wide), too_many);
+    assert_eq!(KernelRidge::default().check(wide), Ok(()));
+    let few = ForwardSelection { count: 4, ..ForwardSelection::default() };
+    assert_eq!(few.check(wide), Err(Error::Count { asked: 4, available: 3 }));
+    let ridge = Ridge { lambda: -1.0, ..Ridge::default() };
+    assert!(matches!(ridge.check(size), Err(Error::Parameter { name: "lambda", .. })));
 }
 
 #[test]

@@ -95,7 +95,8 @@ proptest! {
         let total: f64 = hypotheses.iter().map(|h| h.weight).sum();
         prop_assert!((total - 1.0).abs() < 1e-12);
         for hypothesis in hypotheses {
-            prop_assert!(hypothesis.mean.iter().chain(&hypothesis.std).all(|v| v.is_finite()));
+            prop_assert!(hypothesis.mean.iter().all(|v| v.is_finite()));
+            prop_assert!(hypothesis.std.iter().all(|&v| v > 0.0));
         }
     }
 }

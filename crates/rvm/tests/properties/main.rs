@@ -4,6 +4,7 @@ mod auto_traits;
 mod bad_input;
 mod bridges;
 mod conditional;
+mod deviations;
 mod equivariance;
 mod export;
 mod forward;

@@ -10,6 +10,7 @@ use crate::basis::kernel::{Kernel, Width};
 use crate::data::check;
 use crate::data::problem::Problem;
 use crate::data::scaler::Standardiser;
+use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::model::report::{Fit, Progress, Report, Trace};
 use crate::rvm::ard::evidence::Widths;
@@ -86,6 +87,14 @@ impl LearntWidths {
         self.fit_observed(x, y, &|_| ())
     }
 
+    /// Refuses settings out of range, and problems too large for this fitter. What
+    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    pub fn check(&self, size: ProblemSize) -> Result<()> {
+        self.start()?;
+        self.ties(size.inputs)?;
+        self.rvm.check(size)
+    }
+
     /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step over the vectors.
     pub fn fit_observed(
         &self,
@@ -93,12 +102,7 @@ impl LearntWidths {
         y: MatRef<'_, f64>,
         observe: &dyn Fn(Progress),
     ) -> Result<Fit> {
-        let Kernel::Gaussian(width) = self.rvm.kernel else {
-            return Err(Error::NoWidth);
-        };
-        check::iterations(self.rounds)?;
-        check::iterations(self.steps)?;
-        width.check()?;
+        let width = self.start()?;
         let problem = Problem::new(x, y)?;
         let ties = self.ties(x.nrows())?;
         let inputs = problem.features();
@@ -125,6 +129,17 @@ impl LearntWidths {
             learning.vectors = vectors;
             learning.climb_widths(self)?;
         }
+    }
+
+    /// The width to start from, once the settings are found in range.
+    fn start(&self) -> Result<Width> {
+        let Kernel::Gaussian(width) = self.rvm.kernel else {
+            return Err(Error::NoWidth);
+        };
+        check::iterations(self.rounds)?;
+        check::iterations(self.steps)?;
+        width.check()?;
+        Ok(width)
     }
 
     /// Which width each input has.
