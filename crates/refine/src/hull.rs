@@ -1,4 +1,7 @@
 //! How far a camera's ray passes a hull of balls.
+//!
+//! A ray begins at the camera: of a solid that crosses the camera's plane it passes what is in front,
+//! and what is behind it passes at the camera's centre.
 
 use glam::{DMat3, DVec2, DVec3};
 use phalanx_hand::Primitive;
@@ -7,7 +10,8 @@ use phalanx_hand::Primitive;
 ///
 /// A ray touches the hull of some balls where it touches one of the balls whose centres and radii
 /// are means of theirs, weighted alike: ρ = min over weights of |distance of the ray from the
-/// centre| − radius is 0 on the outline, exactly and in any perspective.
+/// centre| − radius is 0 on the outline, exactly and in any perspective. Where balls are behind the
+/// camera it is so only for edges, which is enough: nothing is seen there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Hull {
     centers: [DVec3; 3],
@@ -33,6 +37,24 @@ pub(crate) struct Passing {
     /// For a squashed solid the point of the ray that its rigid motion acts at, in the camera's
     /// frame.
     pub(crate) point: Option<DVec3>,
+}
+
+/// A ray, and how it passes the centres of balls.
+struct Sight<'a> {
+    ray: DVec3,
+    /// From the ray's beginning.
+    centers: &'a [DVec3; 3],
+    /// How far along the ray they are.
+    depths: [f64; 3],
+    /// From the ray's line.
+    across: [DVec3; 3],
+}
+
+impl Sight<'_> {
+    /// From the nearest place of the ray, for balls whose depth has the sign of `depth`.
+    fn to(&self, depth: f64) -> &[DVec3; 3] {
+        if depth < 0.0 { self.centers } else { &self.across }
+    }
 }
 
 /// Which ball of a hull a ray passes most closely.
@@ -109,10 +131,11 @@ impl Hull {
         }
     }
 
-    /// Its outline's whereabouts in the plane z = 1.
+    /// Its outline's whereabouts in the plane z = 1: anywhere, if it comes close to the camera's plane.
     pub(crate) fn bound(&self) -> Bound {
-        // A ball off the axis is seen wider by less than this.
+        // A ball off the axis is seen wider by less than this, if its depth is some radii.
         const WIDER: f64 = 1.1;
+        const RADII: f64 = 4.0;
         // A ray off the axis passes nearer than the plane says, by no more than this.
         const NEARER: f64 = 0.8;
         // Undoing a squash only takes things apart: what passes the balls where the solid has them
@@ -123,12 +146,13 @@ impl Hull {
         let depth = centers[0].z.min(centers[1].z).min(centers[2].z);
         let middle = (seen[0] + seen[1] + seen[2]) / 3.0;
         let around = seen.map(|corner| corner.distance(middle));
+        let is_close = (0..3).any(|k| centers[k].z < RADII * self.radii[k]);
         Bound {
             corners: self.balls,
             seen,
             middle,
             around: around[0].max(around[1]).max(around[2]),
-            reach: reach[0].max(reach[1]).max(reach[2]),
+            reach: if is_close { f64::INFINITY } else { reach[0].max(reach[1]).max(reach[2]) },
             per_mm: 1.0 / (NEARER * depth),
         }
     }
@@ -144,55 +168,77 @@ impl Hull {
         let stretched = unsquash * ray;
         let length = stretched.length();
         let passing = self.pass_round(distance, stretched / length)?;
-        let foot = self.center(&passing.weights).dot(stretched) / (length * length);
+        let foot = self.center(&passing.weights).dot(stretched).max(0.0) / (length * length);
         Some(Passing { normal: unsquash * passing.normal, point: Some(ray * foot), ..passing })
     }
 
     fn pass_round(&self, within: f64, ray: DVec3) -> Option<Passing> {
-        let across = self.centers.map(|center| center - ray * center.dot(ray));
+        let depths = self.centers.map(|center| center.dot(ray));
+        let across = [0, 1, 2].map(|k| self.centers[k] - ray * depths[k]);
+        let sight = Sight { ray, centers: &self.centers, depths, across };
         let nearest = |distance, weights| Nearest { distance, weights, through: false };
         let Nearest { distance, weights, through } = match self.balls {
-            1 => nearest(across[0].length() - self.radii[0], [1.0, 0.0, 0.0]),
+            1 => nearest(sight.to(depths[0])[0].length() - self.radii[0], [1.0, 0.0, 0.0]),
             2 => {
-                let (distance, t) = self.edge(&across, 0, 1);
+                let (distance, t) = self.edge(&sight, 0, 1);
                 nearest(distance, [1.0 - t, t, 0.0])
             }
-            _ => self.triangle(&across, ray),
+            _ => self.triangle(&sight),
         };
         if distance >= within {
             return None;
         }
-        let offset = across[0] * weights[0] + across[1] * weights[1] + across[2] * weights[2];
+        let depth = depths[0] * weights[0] + depths[1] * weights[1] + depths[2] * weights[2];
+        let to = sight.to(depth);
+        let offset = to[0] * weights[0] + to[1] * weights[1] + to[2] * weights[2];
         let normal = if through { DVec3::ZERO } else { offset.normalize_or_zero() };
         Some(Passing { distance, weights, normal, point: None })
     }
 
     /// ρ of the hull of two balls and the second one's weight.
-    fn edge(&self, across: &[DVec3; 3], from: usize, to: usize) -> (f64, f64) {
-        let (p, q) = (across[from], across[to] - across[from]);
+    fn edge(&self, sight: &Sight<'_>, from: usize, to: usize) -> (f64, f64) {
+        let [first, last] = [sight.depths[from], sight.depths[to]];
+        if (first < 0.0) == (last < 0.0) {
+            return self.part_of_edge(sight.to(first), [from, to], [0.0, 1.0]);
+        }
+        let crossing = first / (first - last);
+        let parts = [(first, [0.0, crossing]), (last, [crossing, 1.0])];
+        let [one, other] =
+            parts.map(|(depth, span)| self.part_of_edge(sight.to(depth), [from, to], span));
+        if one.0 <= other.0 { one } else { other }
+    }
+
+    /// The same of balls whose weight is within a span, with where the ray passes them.
+    fn part_of_edge(
+        &self,
+        offsets: &[DVec3; 3],
+        [from, to]: [usize; 2],
+        span: [f64; 2],
+    ) -> (f64, f64) {
+        let (p, q) = (offsets[from], offsets[to] - offsets[from]);
         let (r, growth) = (self.radii[from], self.radii[to] - self.radii[from]);
         let squared = q.length_squared();
         let beyond = squared - growth * growth;
         let t = if beyond > 1e-12 * squared {
             let foot = -p.dot(q) / squared;
             let height = (p + q * foot).length();
-            (foot + growth * height / (squared * beyond).sqrt()).clamp(0.0, 1.0)
+            (foot + growth * height / (squared * beyond).sqrt()).clamp(span[0], span[1])
         } else if growth > 0.0 {
             // The larger ball hides the smaller one.
-            1.0
+            span[1]
         } else {
-            0.0
+            span[0]
         };
         ((p + q * t).length() - r - growth * t, t)
     }
 
     /// ρ of the hull of three balls: on an edge or, where the ray goes through the triangle of the
     /// centres, there.
-    fn triangle(&self, across: &[DVec3; 3], ray: DVec3) -> Nearest {
+    fn triangle(&self, sight: &Sight<'_>) -> Nearest {
         let mut best =
             Nearest { distance: f64::INFINITY, weights: [1.0, 0.0, 0.0], through: false };
         for (from, to) in [(0, 1), (1, 2), (2, 0)] {
-            let (distance, t) = self.edge(across, from, to);
+            let (distance, t) = self.edge(sight, from, to);
             if distance < best.distance {
                 let mut weights = [0.0; 3];
                 weights[from] = 1.0 - t;
@@ -200,9 +246,11 @@ impl Hull {
                 best = Nearest { distance, weights, through: false };
             }
         }
-        let areas = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| across[i].cross(across[j]).dot(ray));
+        let Sight { ray, depths, across, .. } = sight;
+        let areas = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| across[i].cross(across[j]).dot(*ray));
         let whole = areas[0] + areas[1] + areas[2];
-        if areas.iter().all(|area| area * whole > 0.0) {
+        let depth: f64 = areas.iter().zip(depths).map(|(area, depth)| area * depth).sum();
+        if depth * whole >= 0.0 && areas.iter().all(|area| area * whole > 0.0) {
             // The middle is far inside; how far does not matter, but must not jump.
             let smallest = (0..3).min_by(|&i, &j| self.radii[i].total_cmp(&self.radii[j]));
             let smallest = smallest.unwrap_or(0);
@@ -228,8 +276,14 @@ mod tests {
     use super::*;
 
     fn ball() -> impl Strategy<Value = Ball> {
-        (prop::array::uniform3(-60.0..60.0_f64), 2.0..20.0_f64)
-            .prop_map(|(at, radius)| Ball::new(DVec3::from_array(at) + DVec3::Z * 600.0, radius))
+        ball_at(600.0)
+    }
+
+    /// Around a depth, mm.
+    fn ball_at(depth: f64) -> impl Strategy<Value = Ball> {
+        (prop::array::uniform3(-60.0..60.0_f64), 2.0..20.0_f64).prop_map(move |(at, radius)| {
+            Ball::new(DVec3::from_array(at) + DVec3::Z * depth, radius)
+        })
     }
 
     /// ρ by trying many balls of the hull.
@@ -242,7 +296,8 @@ mod tests {
                 let weights = [1.0 - s - t, s, t];
                 let center: DVec3 = balls.iter().zip(weights).map(|(b, w)| b.center * w).sum();
                 let radius: f64 = balls.iter().zip(weights).map(|(b, w)| b.radius * w).sum();
-                least = least.min((center - ray * center.dot(ray)).length() - radius);
+                let foot = ray * center.dot(ray).max(0.0);
+                least = least.min((center - foot).length() - radius);
             }
         }
         least
@@ -267,6 +322,31 @@ mod tests {
             for beyond in [1e-6, 1.0, 10.0] {
                 prop_assert!(!hull.bound().is_beyond(place, fast + beyond));
             }
+        }
+
+        /// A solid that crosses the camera's plane.
+        #[test]
+        fn rays_begin_at_the_camera(
+            ends in (ball_at(60.0), ball_at(-60.0)),
+            at in prop::array::uniform2(-0.5..0.5_f64),
+        ) {
+            let place = DVec2::from_array(at);
+            let ray = place.extend(1.0).normalize();
+            let hull = Hull::new(&Primitive::RoundCone(ends.into()));
+            let passing = hull.pass(ray);
+            let slow = slow(&[ends.0, ends.1, ends.1], ray);
+            prop_assert!(passing.distance <= slow + 1e-9, "{passing:?} is not {slow}");
+            prop_assert!(slow - passing.distance < 3.0, "{passing:?} is not {slow}");
+            prop_assert!(!hull.bound().is_beyond(place, 1e3));
+            // The normal is the distance's slope.
+            let moved = |by: DVec3| {
+                let ends = [ends.0, ends.1].map(|ball| Ball::new(ball.center + by, ball.radius));
+                Hull::new(&Primitive::RoundCone(ends)).pass(ray).distance
+            };
+            let slope = |axis: DVec3| (moved(axis * 1e-5) - moved(axis * -1e-5)) / 2e-5;
+            let slopes = DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z));
+            prop_assume!(passing.distance > -1.0);
+            prop_assert!(slopes.distance(passing.normal) < 1e-3, "{slopes} is not {passing:?}");
         }
 
         #[test]

@@ -1,8 +1,8 @@
 //! Poses and hands that are found again.
 
-use glam::{DAffine3, DVec2};
+use glam::{DAffine3, DVec2, DVec3};
 use image::GrayImage;
-use phalanx_camera::{Camera, Rig};
+use phalanx_camera::{Camera, Intrinsics, Rig};
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::{
     Calibration, CalibrationFrame, Doubt, Error, Evidence, Level, PosePrior, Refinement,
@@ -174,6 +174,30 @@ proptest! {
         let refined = Refinement::default().run(&hand, &rest, &evidence[..1], &start, &prior);
         prop_assert!(refined.is_ok(), "{refined:?}");
     }
+}
+
+/// A camera above the elbow, in front of which the arm begins and behind which it ends.
+#[test]
+fn an_arm_that_reaches_past_a_camera_is_fitted() {
+    let (mut rig, hand) = (rig(), HandShape::adult());
+    let (position, target) = (DVec3::new(30.0, 120.0, -170.0), DVec3::new(0.0, 0.0, 120.0));
+    let inside = Intrinsics::pinhole(120, 90, 90.0);
+    let above = Camera::look_at("elbow", inside, position, target, DVec3::Y).unwrap();
+    let rest = rig.volume.rest_frame();
+    let truth = hand_bent_by([0.3, 0.5, 0.4, 0.6, 0.3], 0.6);
+    let solids = hand.pose(&truth, &rest).primitives;
+    let depths = solids.iter().flat_map(|solid| solid.balls().to_vec());
+    let nearest = depths.map(|ball| above.extrinsics.to_camera(ball.center).z - ball.radius);
+    assert!(nearest.fold(f64::INFINITY, f64::min) < 0.0, "the arm ends behind the camera");
+    rig.cameras = vec![rig.cameras[1].clone(), above];
+    let evidence = see(&rig, &hand, &truth, &rest);
+    let mut start = truth;
+    start.0[..20].iter_mut().enumerate().for_each(|(k, angle)| *angle += 0.1 * (k as f64).sin());
+    let refined =
+        Refinement::default().run(&hand, &rest, &evidence, &start, &prior(start)).unwrap();
+    assert!(refined.overlaps.iter().all(|&overlap| overlap > 0.96), "{:?}", refined.overlaps);
+    let (before, after) = (mean_error_deg(&start, &truth), mean_error_deg(&refined.pose, &truth));
+    assert!(after < 0.5 * before, "{before}° becomes {after}°");
 }
 
 /// Where the pixels of an image of this width end that are told of.

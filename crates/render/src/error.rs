@@ -18,14 +18,6 @@ pub enum Error {
         /// What is out of range: `center`, `radius`, `thin_axis` or `flatness`.
         field: &'static str,
     },
-    /// A solid reaches to the camera or behind it, where it has no outline.
-    #[error("primitive {index} comes as near as {nearest_mm:.1} mm to the camera's plane")]
-    TooNear {
-        /// Index of the solid in the slice.
-        index: usize,
-        /// Its least depth, mm; negative behind the camera.
-        nearest_mm: f64,
-    },
     /// The background picture has another size than the camera's image.
     #[error("the background is {have:?}, the camera's image {want:?} px")]
     BackgroundSize {

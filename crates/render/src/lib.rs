@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod appearance;
+mod clip;
 mod error;
 mod fill;
 mod outline;

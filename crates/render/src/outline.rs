@@ -9,9 +9,6 @@ use std::f64::consts::{PI, TAU};
 use glam::{DMat2, DMat3, DVec2, DVec3};
 use phalanx_hand::{Ball, Primitive};
 
-/// Nothing may come nearer to the camera's plane than this, mm.
-const NEAR: f64 = 1.0;
-
 /// A filled ellipse of the normalised image plane: middle + √shape · (unit disc).
 #[derive(Clone, Copy, Default)]
 struct Ellipse {
@@ -20,15 +17,15 @@ struct Ellipse {
 }
 
 impl Ellipse {
-    /// The outline of a ball, in the camera's frame, squashed by `squash` about `anchor`; the
-    /// least depth of the squashed ball where that is too near.
-    fn of(ball: &Ball, squash: DMat3, anchor: DVec3) -> Result<Self, f64> {
+    /// The outline of a ball, in the camera's frame, squashed by `squash` about `anchor`; `None`
+    /// where the squashed ball comes to depth `near`.
+    fn of(ball: &Ball, squash: DMat3, anchor: DVec3, near: f64) -> Option<Self> {
         let c = anchor + squash * (ball.center - anchor);
         let m = squash * squash.transpose() * (ball.radius * ball.radius);
         let depth_radius = m.z_axis.z.sqrt();
         let nearest = c.z - depth_radius;
-        if nearest <= NEAR || nearest.is_nan() {
-            return Err(nearest);
+        if nearest <= near || nearest.is_nan() {
+            return None;
         }
         // The dual conic c cᵀ − m over its corner k, expanded so that nothing cancels.
         let k = nearest * (c.z + depth_radius);
@@ -39,7 +36,7 @@ impl Ellipse {
         let shape = corner / k
             + (outer(u, u) * m.z_axis.z - (outer(u, b) + outer(b, u)) * c.z + outer(b, b))
                 / (k * k);
-        Ok(Self { middle, shape })
+        Some(Self { middle, shape })
     }
 
     /// The largest radius of curvature: a²/b of the half-axes.
@@ -59,21 +56,22 @@ impl Ellipse {
 }
 
 /// Appends the corners of a solid's outline, in order, in the normalised image plane, so many that
-/// the polygon stays within `deviation` inside the outline. A solid too near gives its least depth,
-/// mm.
+/// the polygon stays within `deviation` inside the outline. `None` where the solid comes to depth
+/// `near`, mm, of at least 0.
 pub(crate) fn trace(
     solid_in_camera: &Primitive,
+    near: f64,
     deviation: f64,
     corners: &mut Vec<DVec2>,
-) -> Result<(), f64> {
+) -> Option<()> {
     let balls = solid_in_camera.balls();
     let squash = solid_in_camera.squash();
     let mut ellipses = [Ellipse::default(); 3];
     for (ellipse, ball) in ellipses.iter_mut().zip(balls) {
-        *ellipse = Ellipse::of(ball, squash, balls[0].center)?;
+        *ellipse = Ellipse::of(ball, squash, balls[0].center, near)?;
     }
     walk(&ellipses[..balls.len()], deviation, corners);
-    Ok(())
+    Some(())
 }
 
 /// Walks once around the hull of some ellipses by the direction of its normal: the furthest

@@ -7,10 +7,10 @@ use phalanx_hand::Primitive;
 
 use crate::appearance::Sensor;
 use crate::fill::Filler;
-use crate::outline;
 use crate::solid::Scene;
 use crate::surface::Hit;
 use crate::{Appearance, Error, Result, Supersampling};
+use crate::{clip, outline};
 
 /// Depth along the camera's axis, row by row.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,15 +19,16 @@ pub struct DepthMap {
     pub width: u32,
     /// Height, px.
     pub height: u32,
-    /// z in the camera's frame at each pixel's centre, mm; infinity where there is nothing.
+    /// z in the camera's frame at each pixel's centre, mm, at least 1; infinity where there is
+    /// nothing.
     pub depths: Vec<f32>,
 }
 
 /// Renders solids, given in the world's millimetres, through one camera.
 ///
-/// It keeps its buffers from picture to picture; build one per camera and thread. All of a
-/// solid must be at least 1 mm in front of the camera's plane: else every call answers
-/// [`Error::TooNear`].
+/// It keeps its buffers from picture to picture; build one per camera and thread. Of a solid that
+/// crosses the camera's plane the picture shows what is in front; one that holds the camera's
+/// centre covers all of it.
 #[derive(Debug, Clone)]
 pub struct Renderer {
     intrinsics: Intrinsics,
@@ -313,12 +314,11 @@ impl Renderer {
         for (index, primitive) in primitives.iter().enumerate() {
             check(primitive).map_err(|field| Error::Primitive { index, field })?;
             self.ideal.clear();
-            outline::trace(
-                &primitive.moved(&self.to_camera),
-                self.deviation / focal,
-                &mut self.ideal,
-            )
-            .map_err(|nearest_mm| Error::TooNear { index, nearest_mm })?;
+            let solid = primitive.moved(&self.to_camera);
+            let deviation = self.deviation / focal;
+            if outline::trace(&solid, clip::NEAR, deviation, &mut self.ideal).is_none() {
+                clip::trace(&solid, self.reach, deviation, &mut self.ideal);
+            }
             self.push_outline(focal);
             self.ends.push(self.corners.len());
         }
@@ -373,11 +373,13 @@ fn centre(x: u32, y: u32) -> DVec2 {
 
 /// The field of a solid that is out of its range.
 fn check(primitive: &Primitive) -> std::result::Result<(), &'static str> {
+    /// Lengths, mm, whose fourth powers are far from overflowing.
+    const FARTHEST: f64 = 1e9;
     for ball in primitive.balls() {
-        if !ball.center.is_finite() {
+        if !ball.center.abs().cmple(DVec3::splat(FARTHEST)).all() {
             return Err("center");
         }
-        if !(ball.radius > 0.0 && ball.radius.is_finite()) {
+        if !(ball.radius > 0.0 && ball.radius <= FARTHEST) {
             return Err("radius");
         }
     }

@@ -5,7 +5,8 @@ use std::ops::Range;
 use glam::{DMat3, DVec2, DVec3};
 use phalanx_hand::Primitive;
 
-use crate::surface::{Cone, Face, Hit, Ray, Surface};
+use crate::clip::{NEAR, plane_between};
+use crate::surface::{Hit, Ray, Surface};
 
 /// A rectangle of the image, px.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +24,8 @@ struct Solid {
     /// What undoes the squash, about the anchor.
     unsquash: DMat3,
     anchor: DVec3,
+    /// It holds the camera's centre, and is before everything else.
+    holds_camera: bool,
 }
 
 /// The solids of one picture, in the camera's frame.
@@ -41,15 +44,7 @@ impl Scene {
     /// Adds a solid and its outline in the picture.
     pub(crate) fn push(&mut self, solid: &Primitive, outline: &[DVec2]) {
         let start = self.surfaces.len();
-        let balls = solid.balls();
-        self.surfaces.extend(balls.iter().copied().map(Surface::Sphere));
-        for (index, a) in balls.iter().enumerate() {
-            let cones = balls[index + 1..].iter().filter_map(|b| Cone::between(a, b));
-            self.surfaces.extend(cones.map(Surface::Cone));
-        }
-        if let Primitive::Wedge(balls) = solid {
-            self.surfaces.extend(Face::of(balls).into_iter().flatten().map(Surface::Face));
-        }
+        self.surfaces.extend(Surface::of(solid));
         // The outline's polygon may stay a little inside the outline.
         let margin = DVec2::splat(0.5);
         self.solids.push(Solid {
@@ -59,7 +54,8 @@ impl Scene {
                 most: outline.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max) + margin,
             },
             unsquash: solid.squash().inverse(),
-            anchor: balls[0].center,
+            anchor: solid.balls()[0].center,
+            holds_camera: plane_between(solid).is_none(),
         });
     }
 
@@ -83,14 +79,20 @@ impl Window {
 
 impl Solid {
     fn enter(&self, direction: DVec3, surfaces: &[Surface]) -> Option<Hit> {
+        if self.holds_camera {
+            return Some(Hit { distance: NEAR, normal: -direction });
+        }
         // A squash maps lines to lines and keeps ratios along them, so distances stay.
         let ray = Ray {
             origin: self.anchor - self.unsquash * self.anchor,
             direction: self.unsquash * direction,
         };
         let surfaces = &surfaces[self.surfaces.clone()];
-        let hit = first(surfaces.iter().filter_map(|surface| surface.enter(&ray)))?;
-        Some(Hit { normal: self.unsquash.transpose() * hit.normal, ..hit })
+        // The ray's line enters the solid either before the camera or behind it.
+        let hit = first(surfaces.iter().filter_map(|surface| surface.enter(&ray)))
+            .filter(|hit| hit.distance > 0.0)?;
+        let normal = self.unsquash.transpose() * hit.normal;
+        Some(Hit { distance: hit.distance.max(NEAR), normal })
     }
 }
 

@@ -6,7 +6,7 @@
 //! balls and cones go on underneath what they touch.
 
 use glam::{DMat2, DVec2, DVec3};
-use phalanx_hand::Ball;
+use phalanx_hand::{Ball, Primitive};
 
 /// A ray; distances along it are in units of its direction's length.
 #[derive(Clone, Copy)]
@@ -32,6 +32,30 @@ pub(crate) enum Surface {
 }
 
 impl Surface {
+    /// All surfaces of the hull of a solid's balls, as they are before it is squashed.
+    pub(crate) fn of(solid: &Primitive) -> impl Iterator<Item = Self> {
+        let balls = solid.balls();
+        let spheres = balls.iter().copied().map(Self::Sphere);
+        let pairs = balls.iter().enumerate().flat_map(|(index, a)| {
+            balls[index + 1..].iter().filter_map(move |b| Cone::between(a, b))
+        });
+        let faces = match solid {
+            Primitive::Wedge(balls) => Face::of(balls),
+            _ => None,
+        };
+        let faces = faces.into_iter().flatten().map(Self::Face);
+        spheres.chain(pairs.map(Self::Cone)).chain(faces)
+    }
+
+    /// The outward unit normal of the plane that touches the surface and faces a point best.
+    pub(crate) fn facing(&self, point: DVec3) -> DVec3 {
+        match self {
+            Self::Sphere(ball) => (point - ball.center).normalize_or(DVec3::Z),
+            Self::Cone(cone) => cone.facing(point),
+            Self::Face(face) => face.normal,
+        }
+    }
+
     pub(crate) fn enter(&self, ray: &Ray) -> Option<Hit> {
         match self {
             Self::Sphere(ball) => enter_sphere(ball, ray),
@@ -82,6 +106,12 @@ impl Cone {
             start: a.radius * slope,
             end: length + b.radius * slope,
         })
+    }
+
+    fn facing(&self, point: DVec3) -> DVec3 {
+        let out = (point - self.center).reject_from_normalized(self.axis);
+        let out = out.normalize_or(self.axis.any_orthonormal_vector());
+        out * (1.0 - self.slope * self.slope).sqrt() + self.axis * self.slope
     }
 
     /// A surface point at height z along the axis and ρ from it has z·slope + ρ·√(1 − slope²) =

@@ -137,7 +137,9 @@ fn bad_solids_are_refused_by_index() {
     for (solid, field) in [
         (Primitive::Sphere(ball(f64::NAN, 5.0)), "center"),
         (Primitive::RoundCone([ball(0.0, 5.0), ball(f64::INFINITY, 5.0)]), "center"),
+        (Primitive::Sphere(ball(-1e34, 5.0)), "center"),
         (Primitive::Sphere(ball(0.0, 0.0)), "radius"),
+        (Primitive::Sphere(ball(0.0, 1e34)), "radius"),
         (Primitive::Sphere(ball(0.0, f64::INFINITY)), "radius"),
         (squashed(DVec3::ZERO, 0.5), "thin_axis"),
         (squashed(DVec3::Y * 2.0, 0.5), "thin_axis"),
@@ -147,11 +149,6 @@ fn bad_solids_are_refused_by_index() {
     ] {
         let error = Error::Primitive { index: 1, field };
         assert_eq!(renderer().silhouette(&[BALL, solid]), Err(error));
-    }
-    for z in [-300.0, -310.0, -299.0 + 1e-9 - 1.0] {
-        let solid = Primitive::Sphere(Ball::new(DVec3::new(0.0, 0.0, z), 1.0));
-        let result = renderer().depth(&[BALL, BALL, solid]);
-        assert!(matches!(result, Err(Error::TooNear { index: 2, .. })), "{z}");
     }
 }
 

@@ -8,11 +8,11 @@ use phalanx_hand::{Ball, Primitive};
 use phalanx_render::{Renderer, Supersampling};
 use proptest::prelude::*;
 
-fn lens(lens: impl Into<Lens>) -> Camera {
+pub(crate) fn lens(lens: impl Into<Lens>) -> Camera {
     camera(Intrinsics { lens: lens.into(), ..Intrinsics::pinhole(120, 90, 110.0) })
 }
 
-fn silhouette(camera: &Camera, solids: &[Primitive]) -> GrayImage {
+pub(crate) fn silhouette(camera: &Camera, solids: &[Primitive]) -> GrayImage {
     Renderer::new(camera).unwrap().silhouette(solids).unwrap()
 }
 
@@ -24,7 +24,7 @@ fn shifted(camera: &Camera, solids: &[Primitive], by: DVec2) -> GrayImage {
 }
 
 /// Asserts that silhouette and rays agree but within 0.02 px of the outline.
-fn assert_like_rays(camera: &Camera, solids: &[Primitive]) {
+pub(crate) fn assert_like_rays(camera: &Camera, solids: &[Primitive]) {
     let mask = silhouette(camera, solids);
     let depth = Renderer::new(camera).unwrap().depth(solids).unwrap();
     let rays: Vec<u8> = depth.depths.iter().map(|z| if z.is_finite() { 255 } else { 0 }).collect();
@@ -91,8 +91,6 @@ proptest! {
         solid in solids(900.0), k1 in -0.25..-0.1,
     ) {
         let camera = lens(Distortion { k1, ..Distortion::NONE });
-        // Squashed so far from its anchor, a cylinder may come behind the camera.
-        prop_assume!(Renderer::new(&camera).unwrap().silhouette(&[solid]).is_ok());
         assert_like_rays(&camera, &[solid]);
     }
 

@@ -25,6 +25,12 @@ pub(crate) fn balls(reach: f64) -> impl Strategy<Value = Ball> {
         .prop_map(|(x, y, z, radius)| Ball::new(DVec3::new(x, y, z), radius))
 }
 
+/// Balls before, behind and beside the camera, and around it.
+fn balls_all_around() -> impl Strategy<Value = Ball> {
+    (-150.0..150.0, -150.0..150.0, -500.0..-100.0, 3.0..50.0)
+        .prop_map(|(x, y, z, radius)| Ball::new(DVec3::new(x, y, z), radius))
+}
+
 pub(crate) fn unit_vectors() -> impl Strategy<Value = DVec3> {
     (-1.0..1.0f64, 0.0..6.3f64).prop_map(|(height, turn)| {
         (DVec2::from_angle(turn) * (1.0 - height * height).sqrt()).extend(height)
@@ -32,22 +38,33 @@ pub(crate) fn unit_vectors() -> impl Strategy<Value = DVec3> {
 }
 
 pub(crate) fn cylinders(reach: f64) -> impl Strategy<Value = Primitive> {
-    (balls(reach), balls(reach), unit_vectors(), 0.3..1.0f64).prop_map(
-        |(a, b, thin_axis, flatness)| Primitive::GeneralisedCylinder {
-            ends: [a, b],
-            thin_axis,
-            flatness,
-        },
-    )
+    squashed(balls(reach), balls(reach))
+}
+
+fn squashed(
+    a: impl Strategy<Value = Ball>,
+    b: impl Strategy<Value = Ball>,
+) -> impl Strategy<Value = Primitive> {
+    (a, b, unit_vectors(), 0.3..1.0f64).prop_map(|(a, b, thin_axis, flatness)| {
+        Primitive::GeneralisedCylinder { ends: [a, b], thin_axis, flatness }
+    })
 }
 
 /// Any solid with its balls within `reach` mm of the view's axis.
 pub(crate) fn solids(reach: f64) -> impl Strategy<Value = Primitive> {
+    solids_of(move || balls(reach))
+}
+
+/// Any solid, most of which cross the camera's plane.
+pub(crate) fn crossing_solids() -> impl Strategy<Value = Primitive> {
+    solids_of(balls_all_around)
+}
+
+fn solids_of<S: Strategy<Value = Ball>>(ball: impl Fn() -> S) -> impl Strategy<Value = Primitive> {
     prop_oneof![
-        balls(reach).prop_map(Primitive::Sphere),
-        (balls(reach), balls(reach)).prop_map(|(a, b)| Primitive::RoundCone([a, b])),
-        (balls(reach), balls(reach), balls(reach))
-            .prop_map(|(a, b, c)| Primitive::Wedge([a, b, c])),
-        cylinders(reach),
+        ball().prop_map(Primitive::Sphere),
+        (ball(), ball()).prop_map(|(a, b)| Primitive::RoundCone([a, b])),
+        (ball(), ball(), ball()).prop_map(|(a, b, c)| Primitive::Wedge([a, b, c])),
+        squashed(ball(), ball()),
     ]
 }
