@@ -2,6 +2,7 @@
 
 mod ablation;
 mod bench_peers;
+mod cargo;
 mod chart;
 mod check_crates;
 mod contact_sheet;
@@ -30,6 +31,7 @@ mod postures;
 mod presets;
 mod principal_axes;
 mod progress;
+mod properties;
 mod refining;
 mod report;
 mod saturation;
@@ -104,6 +106,8 @@ enum Command {
     Pictures(pictures::Arguments),
     /// Check the crates as those get them who depend on one alone: licences, features, packages.
     CheckCrates(check_crates::Arguments),
+    /// Try the property tests on other cases than the test command does.
+    Properties(properties::Arguments),
     /// Feed damaged files to everything that reads files.
     Fuzz(fuzz::Arguments),
     /// Measure our crates beside their best peers, and write docs/peers.md.
@@ -152,6 +156,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::TwoCamera(arguments) => two_camera::run(arguments)?,
         Command::Pictures(arguments) => pictures::run(arguments)?,
         Command::CheckCrates(arguments) => check_crates::run(arguments)?,
+        Command::Properties(arguments) => return properties::run(arguments),
         Command::Fuzz(arguments) => fuzz::run(arguments)?,
         Command::BenchPeers(arguments) => bench_peers::run(arguments)?,
         Command::Performance(arguments) => performance::run(arguments)?,

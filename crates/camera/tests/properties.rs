@@ -1,5 +1,7 @@
 //! Projection and its inverse, moved, cropped, resized and written to TOML.
 
+mod property;
+
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, EulerRot};
 use phalanx_camera::{
     Camera, Distortion, Error, Extrinsics, Fisheye, Intrinsics, Lens, PixelMap, Ray, Rig, Volume,
@@ -115,7 +117,7 @@ fn least_slope(lens: &Lens, radius: f64) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(property::cases(256))]
 
     #[test]
     fn unproject_inverts_project(camera in cameras(), u in 0.0..1.0, v in 0.0..1.0,

@@ -1,6 +1,7 @@
 //! K-means, votes and residuals by squared Euclidean distances, whole and in batches.
 
 mod histograms;
+mod property;
 
 use histograms::{DIM, histograms};
 use phalanx_codebook::{
@@ -25,7 +26,7 @@ fn slow_distortion(metric: Metric, samples: &[f32], centres: &[f32]) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(24))]
 
     #[test]
     fn the_distortion_falls_and_is_what_it_says(

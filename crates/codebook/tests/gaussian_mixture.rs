@@ -1,5 +1,7 @@
 //! Mixtures of Gaussians, and the Fisher vectors that they make.
 
+mod property;
+
 use phalanx_codebook::{
     AnyCoding, Coding, Error, ExpectationMaximisation, Fisher, GaussianMixture, MixtureParts,
     Scratch,
@@ -156,7 +158,7 @@ fn settings_out_of_range_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(48))]
 
     /// Whatever the scale, and with directions that do not vary or samples that repeat.
     #[test]

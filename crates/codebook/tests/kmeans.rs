@@ -1,6 +1,7 @@
 //! K-means on histograms like shape contexts.
 
 mod histograms;
+mod property;
 
 use histograms::{DIM, histograms};
 use phalanx_codebook::{Error, Fit, KMeans, chi_squared};
@@ -25,7 +26,7 @@ fn slow_distortion(samples: &[f32], centres: &[f32]) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(12))]
 
     /// Up to rises of 0.2 % of it: the mean is not quite the minimiser of χ², least so for the few
     /// and scattered members that centres have here. The largest rise seen in 1,200 such runs was

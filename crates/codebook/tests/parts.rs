@@ -1,6 +1,7 @@
 //! Codebooks from parts, to bytes and back; and bytes that are no codebook.
 
 mod histograms;
+mod property;
 
 use histograms::{DIM, histograms};
 use phalanx_codebook::{Codebook, Error};
@@ -64,7 +65,7 @@ fn hostile_text_is_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(256))]
 
     /// Cut short or with a byte changed, a codebook is refused or is one that its parts allow.
     #[test]

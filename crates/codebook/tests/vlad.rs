@@ -1,6 +1,7 @@
 //! Residual codes against a slow and obvious version, and what must hold of any.
 
 mod histograms;
+mod property;
 
 use histograms::{DIM, histograms};
 use phalanx_codebook::{AnyCoding, Codebook, Coding, Error, Scratch, Vlad, Voting};
@@ -38,7 +39,7 @@ fn close(a: &[f64], b: &[f64], tolerance: f64) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(64))]
 
     #[test]
     fn agrees_with_the_slow_version(centres in 1..40_usize, samples in 1..30_usize, seed: u64) {

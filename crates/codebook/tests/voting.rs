@@ -1,5 +1,7 @@
 //! Votes against a slow and obvious version, and what must hold of any votes.
 
+mod property;
+
 use phalanx_codebook::{Codebook, Error, Scratch, Voting, chi_squared};
 use proptest::prelude::*;
 
@@ -63,7 +65,7 @@ fn is_close_call(codebook: &Codebook, sample: &[f32], voting: Voting) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(256))]
 
     #[test]
     fn agrees_with_the_slow_version((codebook, samples, voting) in elections()) {

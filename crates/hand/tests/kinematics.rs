@@ -1,5 +1,7 @@
 //! Properties of the forward kinematics.
 
+mod property;
+
 use glam::{DAffine3, DMat3, DVec3};
 use phalanx_hand::{Digit, Dof, HandShape, Pose, Primitive, Side};
 use proptest::prelude::*;
@@ -19,7 +21,7 @@ fn bones() -> impl Iterator<Item = (usize, usize)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(property::cases(256))]
 
     #[test]
     fn bones_keep_their_lengths(pose in any_pose()) {

@@ -1,5 +1,7 @@
 //! The closed-form derivative of forward kinematics against central differences.
 
+mod property;
+
 use glam::{DAffine3, DQuat, DVec3};
 use phalanx_hand::{Dof, HandShape, Pose, Side};
 use proptest::prelude::*;
@@ -7,7 +9,7 @@ use proptest::prelude::*;
 const STEP: f64 = 1e-5;
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(32) })]
+    #![proptest_config(property::cases(32))]
 
     #[test]
     fn balls_move_as_the_motions_say(

@@ -1,5 +1,7 @@
 //! Random poses and hands.
 
+mod property;
+
 use phalanx_hand::{Dof, HandShape, coupled_pose, uncoupled_pose};
 use proptest::prelude::*;
 
@@ -14,7 +16,7 @@ fn uniform(seed: u64) -> impl FnMut() -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(property::cases(256))]
 
     #[test]
     fn coupled_poses_are_plausible(seed: u64) {

@@ -1,8 +1,9 @@
 //! Joining estimates of single views.
 
+mod property;
+
 use phalanx_multiview::{Error, Estimate, inverse_variance, mean};
 use proptest::prelude::*;
-use proptest::test_runner::Config;
 
 const OUTPUTS: usize = 4;
 
@@ -21,7 +22,7 @@ fn near(a: f64, b: f64) -> bool {
 }
 
 proptest! {
-    #![proptest_config(Config { cases: 64, failure_persistence: None, ..Config::default() })]
+    #![proptest_config(property::cases(64))]
 
     #[test]
     fn weights_are_the_textbook_s(views in views()) {

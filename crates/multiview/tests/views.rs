@@ -1,9 +1,10 @@
 //! Joining views: properties, refusals, storage and threads.
 
+mod property;
+
 use phalanx_codebook::{Codebook, KMeans, Voting};
 use phalanx_multiview::{Concatenation, Error, Pooled, Scratch, Vocabulary};
 use proptest::prelude::*;
-use proptest::test_runner::Config;
 
 const BINS: usize = 6;
 
@@ -54,7 +55,7 @@ fn parts<'a>(joined: &Concatenation, mut x: &'a [f64]) -> Vec<&'a [f64]> {
 }
 
 proptest! {
-    #![proptest_config(Config { cases: 64, failure_persistence: None, ..Config::default() })]
+    #![proptest_config(property::cases(64))]
 
     #[test]
     fn each_view_is_a_histogram((joined, sample) in joined_and_sample()) {

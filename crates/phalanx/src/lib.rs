@@ -20,6 +20,9 @@ mod part;
 mod picture;
 mod preset;
 mod progress;
+#[cfg(test)]
+#[path = "../tests/property/mod.rs"]
+mod property;
 mod random;
 mod refiner;
 mod regression;

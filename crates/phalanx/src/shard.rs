@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        #![proptest_config(ProptestConfig { failure_persistence: None, cases: 64, ..ProptestConfig::default() })]
+        #![proptest_config(crate::property::cases(64))]
 
         #[test]
         fn shards_hold_every_block_once_and_in_order(scenes in 0_usize..200_000, count in 1_usize..50) {

@@ -1,6 +1,8 @@
 //! Windows on the hand: where they look, that training and use see the same through them, and that
 //! shift and scale of the picture make no difference.
 
+mod property;
+
 use glam::{DVec2, DVec3};
 use image::{GrayImage, Luma};
 use phalanx::{
@@ -270,7 +272,7 @@ fn located(camera: &Camera, wrist: DVec3, arm: DVec3) -> LocatedHand {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 40, ..ProptestConfig::default() })]
+    #![proptest_config(property::cases(40))]
 
     #[test]
     fn several_views_tell_the_global_pose(

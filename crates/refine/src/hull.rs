@@ -304,7 +304,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(128) })]
+        #![proptest_config(crate::property::cases(128))]
 
         #[test]
         fn rays_pass_hulls_as_they_pass_the_nearest_of_their_balls(

@@ -8,6 +8,9 @@ mod fit;
 mod hull;
 mod prior;
 mod problem;
+#[cfg(test)]
+#[path = "../tests/property/mod.rs"]
+mod property;
 mod proportions;
 mod refinement;
 mod search;

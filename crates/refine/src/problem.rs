@@ -476,10 +476,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig {
-            failure_persistence: None,
-            ..ProptestConfig::with_cases(12)
-        })]
+        #![proptest_config(crate::property::cases(12))]
 
         #[test]
         fn the_gradient_is_that_of_the_energy(

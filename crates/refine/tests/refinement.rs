@@ -1,5 +1,7 @@
 //! Poses and hands that are found again.
 
+mod property;
+
 use glam::{DAffine3, DVec2, DVec3};
 use image::GrayImage;
 use phalanx_camera::{Camera, Intrinsics, Rig};
@@ -93,7 +95,7 @@ fn energy_of(
 const ROUNDING: f64 = 1.0 + 1e-9;
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(24) })]
+    #![proptest_config(property::cases(24))]
 
     /// It leaves only for a better pose, and where it ended it stays. The hand may be another.
     #[test]
@@ -148,7 +150,7 @@ fn poses_are_found_again() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(24) })]
+    #![proptest_config(property::cases(24))]
 
     /// One camera, and a start far from where the hand is: a long step may end behind the camera.
     #[test]

@@ -5,6 +5,9 @@ mod clip;
 mod error;
 mod fill;
 mod outline;
+#[cfg(test)]
+#[path = "../tests/property/mod.rs"]
+mod property;
 mod renderer;
 mod solid;
 mod supersampling;

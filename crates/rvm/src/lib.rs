@@ -6,6 +6,9 @@ mod error;
 mod linalg;
 mod mlp;
 mod model;
+#[cfg(test)]
+#[path = "../tests/property/mod.rs"]
+mod property;
 mod ridge;
 mod rvm;
 mod sparse;

@@ -2,8 +2,9 @@
 
 #[allow(dead_code, reason = "each test file uses its share of the common masks")]
 mod common;
+mod property;
 
-use common::{cases, drawing, masks};
+use common::{drawing, masks};
 use image::{GrayImage, Luma};
 use phalanx_segmentation::{Cleanup, Error, Workspace, clean, clean_into};
 use proptest::prelude::*;
@@ -71,7 +72,7 @@ fn slow_clean(mask: &GrayImage, cleanup: &Cleanup) -> Option<GrayImage> {
 }
 
 proptest! {
-    #![proptest_config(cases(256))]
+    #![proptest_config(property::cases(256))]
 
     #[test]
     fn equals_the_slow_version(mask in masks(), radius in 0..4_u32, max_hole in 0.0..0.2) {

@@ -2,10 +2,11 @@
 
 #[allow(dead_code, reason = "each test file uses its share of the common masks")]
 mod common;
+mod property;
 
 use std::collections::BTreeSet;
 
-use common::{cases, drawing, masks, placed};
+use common::{drawing, masks, placed};
 use image::GrayImage;
 use imageproc::contours::find_contours;
 use phalanx_segmentation::{Cleanup, Contour, clean};
@@ -37,7 +38,7 @@ fn suzuki(mask: &GrayImage) -> Vec<[i64; 2]> {
 }
 
 proptest! {
-    #![proptest_config(cases(256))]
+    #![proptest_config(property::cases(256))]
 
     #[test]
     fn points_are_an_eight_connected_chain_of_boundary_pixels(mask in masks()) {

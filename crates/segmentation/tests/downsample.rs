@@ -1,9 +1,7 @@
 //! Area averages against reals, and where the crop window lies.
 
-#[allow(dead_code, reason = "each test file uses its share of the common masks")]
-mod common;
+mod property;
 
-use common::cases;
 use image::{GrayImage, Luma, RgbImage};
 use phalanx_segmentation::{CropWindow, Error, downsample, downsample_mask};
 use proptest::prelude::*;
@@ -37,7 +35,7 @@ fn slow_average(
 }
 
 proptest! {
-    #![proptest_config(cases(64))]
+    #![proptest_config(property::cases(64))]
 
     #[test]
     fn equals_the_average_in_reals(

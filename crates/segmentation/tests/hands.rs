@@ -1,5 +1,7 @@
 //! Hands and their wrists in masks of every kind.
 
+mod property;
+
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use image::{GrayImage, Luma};
@@ -151,7 +153,7 @@ fn wrist_models_are_read_back_or_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 64, ..ProptestConfig::default() })]
+    #![proptest_config(property::cases(64))]
 
     #[test]
     fn what_is_found_moves_turns_and_grows_with_the_hand(

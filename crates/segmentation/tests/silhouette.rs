@@ -2,8 +2,9 @@
 
 #[allow(dead_code, reason = "each test file uses its share of the common masks")]
 mod common;
+mod property;
 
-use common::{cases, masks, placed};
+use common::{masks, placed};
 use image::{GrayImage, Luma};
 use phalanx_segmentation::{Contour, Error, Evidence, Silhouette, Workspace};
 use proptest::prelude::*;
@@ -24,7 +25,7 @@ fn toy_hand(width: u32, height: u32, end: i32) -> GrayImage {
 }
 
 proptest! {
-    #![proptest_config(cases(256))]
+    #![proptest_config(property::cases(256))]
 
     #[test]
     fn any_mask_gives_a_silhouette_inside_the_image_or_a_named_error(mask in masks()) {

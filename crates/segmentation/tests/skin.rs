@@ -1,11 +1,9 @@
 //! Skin models: training, deciding, saving.
 
-#[allow(dead_code, reason = "each test file uses its share of the common masks")]
-mod common;
+mod property;
 
 use std::path::PathBuf;
 
-use common::cases;
 use image::{GrayImage, Luma, Rgb, RgbImage};
 use phalanx_segmentation::{
     BUILTIN_SOURCE, Error, Label, SkinModel, SkinParams, SkinTrainer, chroma,
@@ -37,7 +35,7 @@ fn models() -> impl Strategy<Value = SkinModel> {
 }
 
 proptest! {
-    #![proptest_config(cases(48))]
+    #![proptest_config(property::cases(48))]
 
     #[test]
     fn a_model_survives_its_bytes_its_parts_and_serde(model in models()) {

@@ -142,7 +142,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..Default::default() })]
+        #![proptest_config(crate::property::cases(400))]
 
         #[test]
         fn no_other_way_is_cheaper(

@@ -11,6 +11,9 @@ mod orientation;
 mod pairs;
 mod points;
 mod principal;
+#[cfg(test)]
+#[path = "../tests/property/mod.rs"]
+mod property;
 mod resample;
 mod tangent;
 mod workspace;

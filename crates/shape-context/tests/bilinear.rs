@@ -1,5 +1,6 @@
 //! Votes shared by bins: what must hold of them, and how they go with whole votes.
 
+mod property;
 mod star;
 
 use phalanx_shape_context::{
@@ -17,7 +18,7 @@ fn furthest(a: &[f32], b: &[f32]) -> f32 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(64))]
 
     #[test]
     fn histograms_sum_to_1_and_do_not_jump(

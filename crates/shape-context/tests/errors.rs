@@ -1,5 +1,7 @@
 //! Contours that cannot be described are refused by name.
 
+mod property;
+
 use phalanx_shape_context::{
     Chain, Error, MAX_POINTS, Orientation, ShapeContexts, forearm_axis, hand_axis, mean_distance,
 };
@@ -76,7 +78,7 @@ fn neighbours_that_almost_coincide() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(256))]
 
     /// Whatever the points, an answer is finite.
     #[test]

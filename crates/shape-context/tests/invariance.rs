@@ -4,6 +4,7 @@
 //! are off the grid by rounding only, some 1e-14 of their length, while the nearest sector edge is
 //! 1e-9 away or more; so histograms must agree to the rounding of f32, not merely on the whole.
 
+mod property;
 mod star;
 
 use phalanx_shape_context::{Chain, Orientation, ShapeContexts, forearm_axis, hand_axis};
@@ -78,7 +79,7 @@ fn hand() -> impl Strategy<Value = (Vec<[f64; 2]>, End)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(32))]
 
     #[test]
     fn histograms_are_non_negative_and_sum_to_one((points, end) in hand()) {
@@ -199,7 +200,7 @@ fn fork(left: f64, right: f64) -> Vec<[f64; 2]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(32))]
 
     /// The furthest point changes finger here; the hand axis jumps by 30 degrees and more.
     #[test]

@@ -1,5 +1,6 @@
 //! The fast histograms against a slow and obvious version: `atan2`, `sqrt`, `log2`.
 
+mod property;
 mod star;
 
 use phalanx_shape_context::{
@@ -65,7 +66,7 @@ fn compare(points: &[[f64; 2]]) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(48))]
 
     #[test]
     fn agrees_on_real_points(

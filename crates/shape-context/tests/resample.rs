@@ -1,5 +1,6 @@
 //! Points at equal steps along a contour.
 
+mod property;
 mod star;
 
 use phalanx_shape_context::{Chain, Error, resample};
@@ -24,7 +25,7 @@ fn line(length: f64, angle: f64) -> Vec<[f64; 2]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(64))]
 
     #[test]
     fn a_line_has_as_many_points_at_any_angle(angle in 0.0..std::f64::consts::TAU) {

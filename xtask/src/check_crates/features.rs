@@ -3,8 +3,8 @@
 
 use anyhow::Result;
 
-use super::cargo::{cargo, run};
 use super::metadata::Package;
+use crate::cargo::{cargo, run};
 use crate::files;
 
 pub(super) fn check(packages: &[Package]) -> Result<()> {

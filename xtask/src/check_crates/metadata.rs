@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 
-use super::cargo::cargo;
+use crate::cargo::cargo;
 use crate::files;
 
 #[derive(Deserialize)]

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
-use super::cargo::{cargo, run, target};
+use crate::cargo::{cargo, run, target};
 use crate::files;
 
 /// Resolves and compiles in a copy, whose lock file is its own.

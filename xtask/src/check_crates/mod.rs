@@ -1,6 +1,5 @@
 //! `cargo xtask check-crates`: what would trip up someone who depends on one of the crates alone.
 
-mod cargo;
 mod features;
 mod licences;
 mod metadata;

@@ -5,8 +5,8 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-use super::cargo::{cargo, run, target};
 use super::metadata::Package;
+use crate::cargo::{cargo, run, target};
 use crate::files;
 
 /// What cargo always warns of at the end of a dry run.

@@ -9,6 +9,8 @@ mod learnt_metric;
 mod model_file;
 mod network;
 mod photographs;
+#[path = "../property/mod.rs"]
+mod property;
 mod refusals;
 mod roads;
 mod shards;

@@ -2,9 +2,9 @@
 
 use phalanx::{Error, Estimator, draw_silhouette};
 use proptest::prelude::*;
-use proptest::test_runner::Config;
 
 use crate::desk::{ESTIMATOR, FROM_TOP, estimate, masks, rig, top, unseen};
+use crate::property;
 
 const HEADER: usize = 24;
 
@@ -141,7 +141,7 @@ fn change() -> impl Strategy<Value = (f64, Vec<u8>, bool)> {
 }
 
 proptest! {
-    #![proptest_config(Config { cases: 256, failure_persistence: None, ..Config::default() })]
+    #![proptest_config(property::cases(256))]
 
     #[test]
     fn tampered_payloads_are_refused_or_usable(

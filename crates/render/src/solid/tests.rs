@@ -70,9 +70,7 @@ fn solids() -> impl Strategy<Value = Primitive> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 300, failure_persistence: None, ..ProptestConfig::default()
-    })]
+    #![proptest_config(crate::property::cases(300))]
 
     #[test]
     fn rays_stop_where_the_distance_falls_to_zero(

@@ -2,5 +2,7 @@
 
 mod clipped;
 mod pictures;
+#[path = "../property/mod.rs"]
+mod property;
 mod silhouette;
 mod strategies;

@@ -1,5 +1,6 @@
 //! Depth, shaded pictures, and what is refused.
 
+use crate::property;
 use crate::strategies::camera;
 use glam::DVec3;
 use image::{Rgb, RgbImage};
@@ -168,7 +169,7 @@ fn bad_cameras_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(property::cases(256))]
 
     /// Whatever the numbers, there is a picture or an error.
     #[test]

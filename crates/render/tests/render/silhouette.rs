@@ -1,5 +1,6 @@
 //! Silhouettes against rays, areas, points and projected dots.
 
+use crate::property;
 use crate::strategies::{balls, camera, cylinders, lenses, solids, unit_vectors};
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use image::GrayImage;
@@ -74,9 +75,7 @@ fn points(solid: &Primitive, count: u32) -> impl Iterator<Item = DVec3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 100, failure_persistence: None, ..ProptestConfig::default()
-    })]
+    #![proptest_config(property::cases(100))]
 
     #[test]
     fn silhouettes_are_what_rays_meet(

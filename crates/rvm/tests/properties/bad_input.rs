@@ -7,10 +7,11 @@ use phalanx_rvm::{
 };
 use proptest::prelude::*;
 
-use crate::problems::{FITTERS, Source, few, smooth};
+use crate::problems::{FITTERS, Source, smooth};
+use crate::property;
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     #[test]
     fn barely_right_data_give_finite_predictions(

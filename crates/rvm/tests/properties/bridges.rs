@@ -4,7 +4,8 @@ use faer::{Mat, MatRef};
 use phalanx_rvm::{Bridges, Cascade, Kernel, Standardiser, Stop, Width};
 use proptest::prelude::*;
 
-use crate::problems::{GAUSSIAN, close, few, rows, smooth, solve};
+use crate::problems::{GAUSSIAN, close, rows, smooth, solve};
+use crate::property;
 
 /// A F̃ = Ỹ in least squares, with one row of F̃ per sample and one per penalised column.
 fn least_squares(f: MatRef<'_, f64>, y: MatRef<'_, f64>, penalties: &[f64]) -> Mat<f64> {
@@ -56,7 +57,7 @@ fn gaussian(z: MatRef<'_, f64>, beta: f64) -> Mat<f64> {
 }
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     #[test]
     fn bridges_are_the_papers_iteration(

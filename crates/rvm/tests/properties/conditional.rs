@@ -4,14 +4,15 @@ use faer::Mat;
 use phalanx_rvm::{ConditionalDensity, ConditionalDensityParts, Error, Hypothesis};
 use proptest::prelude::*;
 
-use crate::problems::{Source, few};
+use crate::problems::Source;
+use crate::property;
 
 fn squared_distance(hypothesis: &Hypothesis, target: impl Iterator<Item = f64>) -> f64 {
     hypothesis.mean.iter().zip(target).map(|(a, b)| (a - b).powi(2)).sum()
 }
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     /// With every sample a neighbour, the hypotheses are points among all residuals: their
     /// weights, means and deviations are those of the residuals nearest to each.

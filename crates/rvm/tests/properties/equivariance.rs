@@ -4,10 +4,11 @@ use faer::Mat;
 use phalanx_rvm::{Bridges, Kernel, Stop};
 use proptest::prelude::*;
 
-use crate::problems::{FITTERS, Source, close, columns, few, rows, smooth};
+use crate::problems::{FITTERS, Source, close, columns, rows, smooth};
+use crate::property;
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     #[test]
     fn the_order_of_samples_does_not_matter(seed in any::<u64>()) {

@@ -4,7 +4,8 @@ use faer::Mat;
 use phalanx_rvm::{ForwardSelection, Kernel, Standardiser};
 use proptest::prelude::*;
 
-use crate::problems::{few, rows, smooth, solve};
+use crate::problems::{rows, smooth, solve};
+use crate::property;
 
 /// What ‖Y − AF‖² + λ‖A‖² is at best with only these linear columns, standardised:
 /// ‖Y‖² − tr(B (G + λI)⁻¹ Bᵀ).
@@ -25,7 +26,7 @@ fn penalised_error(
 }
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     #[test]
     fn each_column_is_the_best_next_one(seed in any::<u64>(), count in 1..=6_usize) {

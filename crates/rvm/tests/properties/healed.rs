@@ -7,10 +7,11 @@ use phalanx_rvm::{
 };
 use proptest::prelude::*;
 
-use crate::problems::{few, smooth};
+use crate::problems::smooth;
+use crate::property;
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     /// Against the posterior of a machine that has the additional column among its own.
     #[test]

@@ -4,7 +4,8 @@ use faer::{Mat, MatRef};
 use phalanx_rvm::{KernelRidge, Lambda, Standardiser, Width};
 use proptest::prelude::*;
 
-use crate::problems::{few, smooth, solve};
+use crate::problems::{smooth, solve};
+use crate::property;
 
 const BETA: f64 = 0.2;
 
@@ -27,7 +28,7 @@ fn fitter(lambda: Lambda) -> KernelRidge {
 }
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     #[test]
     fn leave_one_out_is_refitting_without_each_sample(seed in any::<u64>()) {

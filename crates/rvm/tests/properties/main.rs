@@ -17,6 +17,8 @@ mod nystrom;
 mod parts;
 mod perceptron;
 mod problems;
+#[path = "../property/mod.rs"]
+mod property;
 mod sampling;
 mod streams;
 mod tipping;

@@ -9,6 +9,8 @@ use proptest::prelude::*;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+use crate::property;
+
 /// Uniform in −1 … 1.
 fn uniform(rows: usize, columns: usize, seed: u64) -> Mat<f64> {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
@@ -185,7 +187,7 @@ fn parts_that_do_not_fit_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(property::cases(64))]
 
     #[test]
     fn a_projection_is_the_slow_one(inputs in 1..40_usize, outputs in 1..20_usize, seed: u64) {

@@ -6,7 +6,8 @@ use faer::{Mat, MatRef};
 use phalanx_rvm::{Columns, Kernel, MultivariateRvm, Pilot, Standardiser, Sums, Tipping, Width};
 use proptest::prelude::*;
 
-use crate::problems::{GAUSSIAN, Source, close, few, rows, smooth};
+use crate::problems::{GAUSSIAN, Source, close, rows, smooth};
+use crate::property;
 
 /// The same climb with C = I + ΦA⁻¹Φᵀ formed and solved anew for every candidate of every step.
 struct Slow {
@@ -96,7 +97,7 @@ impl Slow {
 }
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     #[test]
     fn it_climbs_as_the_slow_one_does(seed in any::<u64>()) {

@@ -6,7 +6,8 @@ use phalanx_rvm::{
 };
 use proptest::prelude::*;
 
-use crate::problems::{close, columns, few, smooth, solve};
+use crate::problems::{close, columns, smooth, solve};
+use crate::property;
 
 const BETA: f64 = 0.2;
 /// Added to the kernel between the centres.
@@ -44,7 +45,7 @@ fn hat(phi: &Mat<f64>, between: &Mat<f64>, lambda: f64) -> Mat<f64> {
 }
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     /// The two hat matrices are N(N + λ)⁻¹ with N = HKH here and HKH − E there, 0 ≤ E ≤ jitter:
     /// they differ by λ(N + λ)⁻¹E(HKH + λ)⁻¹, whose norm is at most the jitter's share of λ.

@@ -3,10 +3,11 @@
 use phalanx_rvm::{Basis, Error, Model, ModelParts, Posterior, Scratch};
 use proptest::prelude::*;
 
-use crate::problems::{FITTERS, few, smooth};
+use crate::problems::{FITTERS, smooth};
+use crate::property;
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     #[test]
     fn parts_rebuild_the_model(seed in any::<u64>()) {

@@ -7,7 +7,8 @@ use phalanx_rvm::{
 };
 use proptest::prelude::*;
 
-use crate::problems::{Source, few};
+use crate::problems::Source;
+use crate::property;
 
 fn small() -> Perceptron {
     Perceptron { hidden: vec![16, 16], epochs: 30, batch: 32, rate: 5e-3, dropout: 0.0, seed: 3 }
@@ -43,7 +44,7 @@ fn bent(seed: u64, samples: usize) -> (Mat<f64>, Mat<f64>) {
 }
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     /// Deviations are the root mean square errors of one sample in 16.
     #[test]

@@ -5,7 +5,6 @@ use phalanx_rvm::{
     Bridges, Cascade, Fit, ForwardSelection, Kernel, KernelRidge, LearntWidths, MultivariateRvm,
     Nystrom, Result, Ridge, Stop, Tipping, Width,
 };
-use proptest::prelude::ProptestConfig;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -33,11 +32,6 @@ pub(crate) const FITTERS: [(&str, Fitter); 13] = [
     }),
     ("cascade", |x, y| Cascade { features: Stop::Threshold(0.05), ..Cascade::default() }.fit(x, y)),
 ];
-
-/// Few enough cases that the whole crate's tests stay quick.
-pub(crate) fn few() -> ProptestConfig {
-    ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() }
-}
 
 pub(crate) struct Source(Pcg64Mcg);
 

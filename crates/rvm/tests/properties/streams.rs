@@ -10,7 +10,8 @@ use phalanx_rvm::{
 };
 use proptest::prelude::*;
 
-use crate::problems::{GAUSSIAN, Source, close, few, smooth};
+use crate::problems::{GAUSSIAN, Source, close, smooth};
+use crate::property;
 
 /// All samples as the pilot: then sums and memory have the same columns.
 pub(crate) fn whole(x: MatRef<'_, f64>, y: MatRef<'_, f64>, kernel: Kernel) -> Result<Columns> {
@@ -121,7 +122,7 @@ fn assert_same(name: &str, memory: &Fit, stream: &Fit, x: &Mat<f64>) {
 }
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     #[test]
     fn sums_give_the_fit_of_all_samples_in_memory(seed in any::<u64>()) {

@@ -4,10 +4,11 @@ use faer::Mat;
 use phalanx_rvm::{Kernel, Tipping, Width};
 use proptest::prelude::*;
 
-use crate::problems::{GAUSSIAN, Source, few, smooth};
+use crate::problems::{GAUSSIAN, Source, smooth};
+use crate::property;
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     #[test]
     fn the_evidence_never_falls(seed in any::<u64>(), linear in any::<bool>()) {

@@ -4,7 +4,8 @@ use faer::{Mat, MatRef};
 use phalanx_rvm::{Error, Healed, Model};
 use proptest::prelude::*;
 
-use crate::problems::{FITTERS, Source, few, smooth};
+use crate::problems::{FITTERS, Source, smooth};
+use crate::property;
 
 /// The errors that a fitter may answer such data with.
 fn named(error: &Error) -> bool {
@@ -32,7 +33,7 @@ fn error(model: &Model, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     /// Inputs that are almost multiples of one another, down to 1e-14 of their size.
     #[test]

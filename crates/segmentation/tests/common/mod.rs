@@ -3,11 +3,6 @@
 use image::{GrayImage, Luma};
 use proptest::prelude::*;
 
-/// Cases of a property and no files of failures.
-pub(crate) fn cases(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
-}
-
 /// Discs, some beyond the border, with speckle.
 pub(crate) fn masks() -> impl Strategy<Value = GrayImage> {
     (16..40_u32, 16..40_u32).prop_flat_map(|(width, height)| {

@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(48) })]
+        #![proptest_config(crate::property::cases(48))]
 
         #[test]
         fn the_gradient_is_that_of_central_differences(seed in any::<u64>(), floor in 1e-6..0.5_f64) {

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail};
 use crate::files;
 
 /// The cargo that runs this command, in a folder.
-pub(super) fn cargo(folder: &Path) -> Command {
+pub(crate) fn cargo(folder: &Path) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     // What is compiled for one folder serves the others, if it is compiled as the workspace says.
     cargo.current_dir(folder).env("CARGO_TARGET_DIR", target());
@@ -20,13 +20,13 @@ pub(super) fn cargo(folder: &Path) -> Command {
 }
 
 /// Where cargo puts what it makes.
-pub(super) fn target() -> PathBuf {
+pub(crate) fn target() -> PathBuf {
     let folder = std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| OsString::from("target"));
     files::in_repository("").join(folder)
 }
 
 /// Runs a command that says what it has to say by itself.
-pub(super) fn run(command: &mut Command) -> Result<()> {
+pub(crate) fn run(command: &mut Command) -> Result<()> {
     let status = command.status().with_context(|| format!("{command:?}"))?;
     if !status.success() {
         bail!("failed: {command:?}");

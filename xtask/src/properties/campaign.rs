@@ -1,0 +1,167 @@
+//! How far a campaign has come, and what it found.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use serde::{Deserialize, Serialize};
+
+use super::Arguments;
+use super::discovery::Property;
+use super::trial::{self, Draw};
+use crate::files;
+
+/// A property whose cases take longer than this, s, is tried on a tenth of them.
+const SLOW: f64 = 0.02;
+
+/// How many cases tell whether a property is slow.
+const FIRST: u32 = 20;
+
+/// How many cases of a slow property are tried at a time, and how many of any other.
+const SLOW_PIECE: u32 = 50;
+const PIECE: u32 = 500;
+
+#[derive(Default, Serialize, Deserialize)]
+struct State {
+    /// By property and seed.
+    progress: BTreeMap<String, BTreeMap<u32, Progress>>,
+    /// By property.
+    finds: BTreeMap<String, Find>,
+}
+
+#[derive(Default, Clone, Copy, Serialize, Deserialize)]
+struct Progress {
+    cases: u32,
+    seconds: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Find {
+    draw: Draw,
+    message: String,
+}
+
+pub(super) struct Campaign {
+    path: PathBuf,
+    state: State,
+}
+
+impl Progress {
+    fn is_slow(self) -> bool {
+        self.seconds > SLOW * f64::from(self.cases)
+    }
+
+    fn wanted(self, cases: u32) -> u32 {
+        if self.is_slow() { cases.div_ceil(10) } else { cases }
+    }
+}
+
+impl Campaign {
+    /// The campaign of a state file, or a new one if there is none.
+    pub(super) fn read(path: PathBuf) -> Result<Self> {
+        let state = match std::fs::read(&path) {
+            Ok(bytes) => {
+                serde_json::from_slice(&bytes).with_context(|| path.display().to_string())?
+            }
+            Err(_) => State::default(),
+        };
+        Ok(Self { path, state })
+    }
+
+    pub(super) fn is_sound(&self) -> bool {
+        self.state.finds.is_empty()
+    }
+
+    /// Tries again what failed, and forgets what no longer does.
+    pub(super) fn retry(&mut self, properties: &[Property]) -> Result<()> {
+        for property in properties {
+            let name = property.to_string();
+            if let Some(find) = self.state.finds.remove(&name) {
+                self.attempt(property, find.draw)?;
+            }
+        }
+        self.write()
+    }
+
+    /// Tries some more cases of a property; whether any were left.
+    pub(super) fn advance(&mut self, property: &Property, seed: u32, cases: u32) -> Result<bool> {
+        let name = property.to_string();
+        if self.state.finds.contains_key(&name) {
+            return Ok(false);
+        }
+        let progress = self.progress(&name, seed);
+        let left = progress.wanted(cases).saturating_sub(progress.cases);
+        if left == 0 {
+            return Ok(false);
+        }
+        let piece = match progress {
+            Progress { cases: 0, .. } => FIRST,
+            _ if progress.is_slow() => SLOW_PIECE,
+            _ => PIECE,
+        };
+        let draw = Draw {
+            rng_seed: u64::from(seed) << 32 | u64::from(progress.cases),
+            cases: piece.min(left),
+        };
+        if let Some(seconds) = self.attempt(property, draw)? {
+            let progress = Progress {
+                cases: progress.cases + draw.cases,
+                seconds: progress.seconds + seconds,
+            };
+            self.state.progress.entry(name).or_default().insert(seed, progress);
+        }
+        self.write()?;
+        Ok(true)
+    }
+
+    /// Tries these cases and keeps what they found; the time that they took if they passed, s.
+    fn attempt(&mut self, property: &Property, draw: Draw) -> Result<Option<f64>> {
+        match trial::run(property, draw)? {
+            Ok(seconds) => Ok(Some(seconds)),
+            Err(message) => {
+                eprintln!("{property}\n{message}\n");
+                self.state.finds.insert(property.to_string(), Find { draw, message });
+                Ok(None)
+            }
+        }
+    }
+
+    fn progress(&self, name: &str, seed: u32) -> Progress {
+        let seeds = self.state.progress.get(name);
+        seeds.and_then(|seeds| seeds.get(&seed)).copied().unwrap_or_default()
+    }
+
+    /// What was tried and what was found, for people.
+    pub(super) fn report(&self, properties: &[Property], arguments: &Arguments) -> String {
+        let mut page = String::new();
+        let mut say = |line: std::fmt::Arguments| writeln!(page, "{line}").expect("to a string");
+        for &seed in &arguments.seed {
+            let progress: Vec<Progress> =
+                properties.iter().map(|p| self.progress(&p.to_string(), seed)).collect();
+            let complete =
+                progress.iter().filter(|p| p.cases > 0 && p.cases >= p.wanted(arguments.cases));
+            let slow = progress.iter().filter(|p| p.is_slow()).count();
+            let cases: u64 = progress.iter().map(|p| u64::from(p.cases)).sum();
+            say(format_args!(
+                "seed {seed}: {} of {} properties had their {} cases ({slow} slow ones a tenth), {cases} in all",
+                complete.count(),
+                properties.len(),
+                arguments.cases,
+            ));
+        }
+        for (name, Find { draw, message }) in &self.state.finds {
+            let Draw { rng_seed, cases } = draw;
+            say(format_args!("\nfailed: {name}\n{message}"));
+            say(format_args!(
+                "again: PROPTEST_RNG_SEED={rng_seed} PROPTEST_CASES={cases} cargo test --manifest-path {name} -- --exact"
+            ));
+        }
+        say(format_args!("\n{} failed", self.state.finds.len()));
+        page
+    }
+
+    fn write(&self) -> Result<()> {
+        files::write_whole(&self.path, &serde_json::to_vec_pretty(&self.state)?)
+    }
+}
