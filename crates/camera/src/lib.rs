@@ -7,6 +7,9 @@ mod file;
 mod intrinsics;
 mod lens;
 mod opencv;
+#[cfg(test)]
+#[path = "../tests/property/mod.rs"]
+mod property;
 mod rig;
 mod triangulate;
 mod virtual_camera;

@@ -70,14 +70,15 @@ fn properties_of(artifact: Artifact) -> Result<Vec<Property>> {
         _ => return Ok(Vec::new()),
     };
     let folder = artifact.manifest_path.parent().context("a manifest is in a folder")?.to_owned();
-    let mut sources = BTreeSet::new();
-    for part in ["src", "tests"].map(|part| folder.join(part)).iter().filter(|part| part.exists()) {
-        collect_names(part, &mut sources)?;
+    let mut names = BTreeSet::new();
+    for path in sources(&folder)? {
+        let source = std::fs::read_to_string(&path);
+        names.extend(names_in(&source.with_context(|| path.display().to_string())?));
     }
     let list = Command::new(&program).args(["--list", "--format", "terse"]).output();
     let list = String::from_utf8(list.context("listing tests")?.stdout).context("a test's name")?;
     let tests = list.lines().filter_map(|line| line.strip_suffix(": test"));
-    let is_property = |test: &&str| test.rsplit("::").next().is_some_and(|t| sources.contains(t));
+    let is_property = |test: &&str| test.rsplit("::").next().is_some_and(|t| names.contains(t));
     Ok(tests
         .filter(is_property)
         .map(|name| Property {
@@ -89,20 +90,21 @@ fn properties_of(artifact: Artifact) -> Result<Vec<Property>> {
         .collect())
 }
 
-/// The names of the functions within `proptest!` in all sources of a folder.
-fn collect_names(folder: &Path, names: &mut BTreeSet<String>) -> Result<()> {
+/// All Rust files of a folder.
+fn sources(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut sources = Vec::new();
     for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
         let path = entry?.path();
         if path.is_dir() {
-            collect_names(&path, names)?;
+            sources.extend(self::sources(&path)?);
         } else if path.extension().is_some_and(|extension| extension == "rs") {
-            let source = std::fs::read_to_string(&path);
-            names.extend(names_in(&source.with_context(|| path.display().to_string())?));
+            sources.push(path);
         }
     }
-    Ok(())
+    Ok(sources)
 }
 
+/// The names of the functions within `proptest!`.
 fn names_in(source: &str) -> Vec<String> {
     let mut names = Vec::new();
     // The line that closes the macro that we are in.
@@ -122,7 +124,23 @@ fn names_in(source: &str) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::names_in;
+    use super::{files, names_in, sources};
+
+    #[test]
+    fn every_property_is_the_same_in_every_run() {
+        for path in sources(&files::in_repository("crates")).unwrap() {
+            let source = std::fs::read_to_string(&path).unwrap();
+            for (_, block) in source.match_indices("proptest! {").map(|(at, _)| source.split_at(at))
+            {
+                let head = block.lines().nth(1).unwrap_or_default();
+                assert!(
+                    head.contains("#![proptest_config(") && head.contains("property::cases("),
+                    "{}: {head}",
+                    path.display()
+                );
+            }
+        }
+    }
 
     #[test]
     fn properties_are_what_the_macro_holds() {

@@ -58,6 +58,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::property::cases(256))]
+
         #[test]
         fn agrees_with_a_search(c in prop::array::uniform7(-2.0..2.0), end in 0.0..3.0_f64) {
             let value = |s: f64| c.iter().rev().fold(0.0, |sum, k| sum * s + k);

@@ -6,7 +6,7 @@ use phalanx_io::take::{
 };
 use proptest::prelude::*;
 
-use crate::{sample, strategies};
+use crate::{property, sample, strategies};
 
 /// That two takes are the same up to so many degrees or millimetres.
 fn assert_near(read: &Take, written: &Take, tolerance: f64) {
@@ -61,7 +61,7 @@ fn json_lines(take: &Take) -> Vec<u8> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+    #![proptest_config(property::cases(64))]
 
     #[test]
     fn every_form_keeps_every_take(take in strategies::takes()) {

@@ -2,6 +2,8 @@
 
 mod exports;
 mod forms;
+#[path = "../property/mod.rs"]
+mod property;
 mod refusals;
 mod sample;
 mod schema;

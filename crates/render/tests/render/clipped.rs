@@ -1,5 +1,6 @@
 //! Solids that reach or cross the camera's plane, against a search along the rays.
 
+use crate::property;
 use crate::silhouette::{assert_like_rays, lens, silhouette};
 use crate::strategies::{crossing_solids, lenses, solids};
 use glam::{DAffine3, DVec2, DVec3};
@@ -52,9 +53,7 @@ fn sees(camera: &Camera, solid: &Primitive, pixel: DVec2) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 200, failure_persistence: None, ..ProptestConfig::default()
-    })]
+    #![proptest_config(property::cases(200))]
 
     #[test]
     fn what_crosses_the_camera_s_plane_is_clipped(

@@ -6,7 +6,8 @@ use phalanx_rvm::{
 };
 use proptest::prelude::*;
 
-use crate::problems::{FITTERS, Source, few, smooth};
+use crate::problems::{FITTERS, Source, smooth};
+use crate::property;
 
 /// The deviations at the samples and far from them.
 fn deviations(model: &Model, x: MatRef<'_, f64>) -> [Mat<f64>; 2] {
@@ -15,7 +16,7 @@ fn deviations(model: &Model, x: MatRef<'_, f64>) -> [Mat<f64>; 2] {
 }
 
 proptest! {
-    #![proptest_config(few())]
+    #![proptest_config(property::cases(24))]
 
     #[test]
     fn one_sample_tells_no_deviation(seed in any::<u64>()) {
