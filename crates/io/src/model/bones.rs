@@ -153,6 +153,8 @@ mod tests {
     use super::*;
 
     proptest! {
+        #![proptest_config(crate::property::cases(256))]
+
         #[test]
         fn the_bones_end_where_the_hand_has_its_joints(
             numbers in prop::array::uniform28(-1.5..1.5_f64),
