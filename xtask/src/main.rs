@@ -9,7 +9,6 @@ mod contact_sheet;
 mod data_set;
 mod described;
 mod experiments;
-mod files;
 mod fixtures;
 mod fuzz;
 mod global_pose;
@@ -20,7 +19,6 @@ mod lab;
 mod memory;
 mod merge;
 mod metrics;
-mod mosaic;
 mod neighbours;
 mod orientation;
 mod performance;
@@ -30,7 +28,6 @@ mod plate;
 mod postures;
 mod presets;
 mod principal_axes;
-mod progress;
 mod properties;
 mod refining;
 mod report;
@@ -51,6 +48,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::{Parser, Subcommand};
+use phalanx_lab::{files, mosaic, progress};
 
 /// The experiments and chores of phalanx.
 #[derive(Parser)]
@@ -100,6 +98,9 @@ enum Command {
     ContactSheet(contact_sheet::Arguments),
     /// Find a real hand in the frames of two calibrated webcams, and draw what was seen.
     TwoCamera(two_camera::Arguments),
+    /// Evaluate real takes, by cameras used, input and method.
+    #[command(name = "eval-real")]
+    EvalReal(phalanx_lab::real::Arguments),
     /// Write the README's table: Table 1 beside what was never seen.
     Headline(headline::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
@@ -148,6 +149,9 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::Presets(arguments) => presets::run(arguments)?,
         Command::Experiment(arguments) => experiments::run(arguments)?,
         Command::Report(arguments) => return report::run(arguments),
+        Command::EvalReal(arguments) => {
+            phalanx_lab::real::run(arguments, &train::fast_through_windows)?;
+        }
         Command::Headline(arguments) => headline::run(arguments)?,
         Command::Fixtures(arguments) => fixtures::run(arguments)?,
         Command::SkinModel(arguments) => skin_model::run(arguments)?,

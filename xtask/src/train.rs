@@ -229,6 +229,21 @@ pub(crate) fn with_hypotheses(estimator: Estimator) -> Result<Estimator> {
     Ok(estimator.learn_errors(&fresh, &bar)?)
 }
 
+/// The fast preset through windows, knowing how it errs, as `--preset fast --framing window --hypotheses`
+/// learns it.
+pub(crate) fn fast_through_windows(rig: &Rig, hand: &HandShape) -> Result<Estimator> {
+    let (framing, preset) = (Framing::Window, Preset::Fast);
+    let set = sets::for_preset(framing, rig, hand, preset.scenes());
+    let training = Training { framing, ..preset.training() };
+    let bar = progress::Bar::new();
+    let part = training.shard(rig, hand, &set, Shard::WHOLE, &bar)?;
+    let left_out = part.left_out();
+    let estimator = part.finish(&bar)?;
+    drop(bar);
+    say_left_out(left_out, set.count());
+    with_hypotheses(estimator)
+}
+
 /// Writes a model and says what it is.
 pub(crate) fn save(estimator: &Estimator, out: &Path) -> Result<()> {
     let bytes = estimator.to_bytes()?;

@@ -7,11 +7,18 @@ use phalanx::Progress;
 
 /// A bar on standard error with an estimate of the time that remains; nothing where that is no
 /// terminal.
-pub(crate) struct Bar(Mutex<ProgressBar>);
+pub struct Bar(Mutex<ProgressBar>);
 
 impl Bar {
-    pub(crate) fn new() -> Self {
+    /// Shows nothing before the first stage begins.
+    pub fn new() -> Self {
         Self(Mutex::new(ProgressBar::hidden()))
+    }
+}
+
+impl Default for Bar {
+    fn default() -> Self {
+        Self::new()
     }
 }
 

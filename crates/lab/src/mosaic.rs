@@ -10,7 +10,7 @@ const BEHIND: Rgb<u8> = Rgb([34, 40, 49]);
 
 /// Panels row by row, so many in each, `gap` pixels between them; a cell is as large as the
 /// largest panel.
-pub(crate) fn mosaic<P: Borrow<RgbImage>>(panels: &[P], columns: u32, gap: u32) -> RgbImage {
+pub fn mosaic<P: Borrow<RgbImage>>(panels: &[P], columns: u32, gap: u32) -> RgbImage {
     let sides = |side: fn(&RgbImage) -> u32| panels.iter().map(move |panel| side(panel.borrow()));
     let most = |side| sides(side).max().unwrap_or_default();
     let (width, height) = (most(RgbImage::width) + gap, most(RgbImage::height) + gap);
@@ -25,14 +25,14 @@ pub(crate) fn mosaic<P: Borrow<RgbImage>>(panels: &[P], columns: u32, gap: u32) 
 }
 
 /// A silhouette in one colour before a dark ground.
-pub(crate) fn tinted(mask: &GrayImage, colour: [u8; 3]) -> RgbImage {
+pub fn tinted(mask: &GrayImage, colour: [u8; 3]) -> RgbImage {
     RgbImage::from_fn(mask.width(), mask.height(), |x, y| {
         if mask.get_pixel(x, y).0[0] > 127 { Rgb(colour) } else { BEHIND }
     })
 }
 
 /// A picture whose pixels can be seen.
-pub(crate) fn magnified(picture: &RgbImage, times: u32) -> RgbImage {
+pub fn magnified(picture: &RgbImage, times: u32) -> RgbImage {
     let (width, height) = (picture.width() * times, picture.height() * times);
     imageops::resize(picture, width, height, imageops::FilterType::Nearest)
 }

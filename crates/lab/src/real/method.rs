@@ -1,0 +1,145 @@
+//! What every method is given, and what it answers.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use anyhow::{Context, Result};
+use cpu_time::ThreadTime;
+use glam::{DAffine3, DVec3};
+use image::DynamicImage;
+use phalanx::Progress;
+use phalanx_camera::Camera;
+use phalanx_hand::{HandShape, JOINTS, Pose, Primitive};
+
+use super::deviation::{PoseCovariance, joint_deviations};
+use super::frame::FrameName;
+use super::take::{Input, Take};
+
+/// What a method looks at: frames of a take through some of its cameras. References are not in it.
+pub struct Sequence<'a> {
+    /// The take.
+    pub take: &'a Take,
+    /// The numbers of the cameras that are used.
+    pub views: &'a [usize],
+    /// What is looked at.
+    pub input: Input,
+    /// The frames, in order.
+    pub frames: &'a [FrameName],
+}
+
+impl Sequence<'_> {
+    /// The cameras that are used.
+    pub fn cameras(&self) -> Vec<Camera> {
+        self.take.cameras(self.views)
+    }
+
+    /// The pictures of a frame, one for each camera.
+    ///
+    /// # Errors
+    /// A picture that cannot be read; it names the file.
+    pub fn pictures(&self, frame: &FrameName) -> Result<Vec<DynamicImage>> {
+        let picture = |&view: &usize| self.take.cameras[view].picture(frame, self.input);
+        self.views.iter().map(picture).collect()
+    }
+}
+
+/// A hand that a method found.
+#[derive(Debug, Clone)]
+pub struct Found {
+    /// The 21 joints in the world, mm.
+    pub joints: [DVec3; JOINTS],
+    /// The hand's solids in the world, mm; none where a method finds joints only.
+    pub solids: Vec<Primitive>,
+    /// Standard deviations of the joints along the world's axes, mm, if the method says them.
+    pub deviations: Option<[DVec3; JOINTS]>,
+    /// Why the method doubts it; empty where it does not.
+    pub doubts: Vec<String>,
+}
+
+impl Found {
+    /// A hand in a pose, with what is known of the pose.
+    pub fn posed(
+        hand: &HandShape,
+        pose: &Pose,
+        rest: &DAffine3,
+        covariance: Option<&PoseCovariance>,
+    ) -> Self {
+        let posed = hand.pose(pose, rest);
+        Self {
+            joints: posed.joints,
+            solids: posed.primitives,
+            deviations: covariance.map(|known| joint_deviations(hand, pose, rest, known)),
+            doubts: Vec::new(),
+        }
+    }
+}
+
+/// What came of one frame.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The hand, or why the frame was refused.
+    pub found: Result<Found>,
+    /// CPU time of one thread, ms; nothing where it would say nothing.
+    pub cpu_ms: Option<f64>,
+}
+
+/// A way from pictures to poses.
+pub trait Method {
+    /// Its name in reports.
+    fn name(&self) -> &'static str;
+
+    /// What it makes of all frames, in their order. A frame that it refuses is an outcome; an error ends
+    /// the run.
+    ///
+    /// # Errors
+    /// Pictures that cannot be read.
+    fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>>;
+}
+
+/// Looks at every frame alone, in parallel, and measures the time of each on its one thread. `memory` is
+/// made once for each thread.
+///
+/// # Errors
+/// Pictures that cannot be read.
+pub fn each_frame<M>(
+    sequence: &Sequence<'_>,
+    progress: &dyn Progress,
+    memory: impl Fn() -> M + Sync,
+    look: impl Fn(&mut M, &[DynamicImage]) -> Result<Found> + Sync,
+) -> Result<Vec<Outcome>> {
+    let frames = sequence.frames;
+    let (next, outcomes) = (AtomicUsize::new(0), Mutex::new(Vec::with_capacity(frames.len())));
+    let work = || -> Result<()> {
+        let mut memory = memory();
+        while let Some(frame) = frames.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let pictures = sequence.pictures(frame)?;
+            let start = ThreadTime::now();
+            let found = look(&mut memory, &pictures);
+            let outcome = Outcome { found, cpu_ms: Some(1e3 * start.elapsed().as_secs_f64()) };
+            let mut outcomes = outcomes.lock().unwrap_or_else(PoisonError::into_inner);
+            outcomes.push((frame, outcome));
+            progress.step();
+        }
+        Ok(())
+    };
+    on_single_threads(&work)?;
+    let mut outcomes = outcomes.into_inner().unwrap_or_else(PoisonError::into_inner);
+    outcomes.sort_by_key(|(frame, _)| *frame);
+    Ok(outcomes.into_iter().map(|(_, outcome)| outcome).collect())
+}
+
+/// Runs the same work on as many threads as the pool has, each in a pool of its own, so that all that one
+/// piece of work starts in parallel stays on its thread and is in its time.
+fn on_single_threads(work: &(impl Fn() -> Result<()> + Sync)) -> Result<()> {
+    let pools = (0..rayon::current_num_threads())
+        .map(|_| rayon::ThreadPoolBuilder::new().num_threads(1).build())
+        .collect::<Result<Vec<_>, _>>()
+        .context("starting worker threads")?;
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = pools.iter().map(|pool| scope.spawn(|| pool.install(work))).collect();
+        threads.into_iter().try_for_each(|thread| match thread.join() {
+            Ok(done) => done,
+            Err(panic) => std::panic::resume_unwind(panic),
+        })
+    })
+}

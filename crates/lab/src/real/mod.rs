@@ -1,0 +1,225 @@
+//! `cargo xtask eval-real`: real takes, by cameras used, input and method.
+//!
+//! Cameras come from a take's calibration alone; references score, and nothing else.
+
+pub mod angles;
+pub mod constant;
+pub mod deviation;
+pub mod frame;
+pub mod landmarks;
+pub mod method;
+pub mod methods;
+pub mod overlap;
+pub mod product;
+pub mod reference;
+pub mod report;
+pub mod row;
+pub mod score;
+pub mod sheet;
+mod statistics;
+mod subsets;
+mod table;
+pub mod take;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use phalanx::Progress;
+use serde::Serialize;
+
+use crate::{files, progress};
+use frame::{FrameName, FrameRanges};
+use method::{Outcome, Sequence};
+use methods::{MethodName, Prepared};
+use product::Learn;
+use reference::Reference;
+use report::Line;
+use row::Row;
+use score::Scorer;
+use statistics::percentile;
+use take::{Input, Take};
+
+/// What is evaluated.
+#[derive(Args)]
+pub struct Arguments {
+    /// The folder of data: every folder in it with a calibration.json is a take.
+    #[arg(long, value_name = "DIR")]
+    data: PathBuf,
+    /// Only takes of these names.
+    #[arg(long, value_name = "NAME")]
+    take: Vec<String>,
+    /// Only these cameras together, such as cam0,cam1; by default all, each pair and each alone.
+    #[arg(long, value_name = "NAMES")]
+    cameras: Vec<String>,
+    /// Only this input.
+    #[arg(long, value_enum)]
+    input: Option<Input>,
+    /// Only these methods.
+    #[arg(long, value_enum, value_delimiter = ',')]
+    method: Vec<MethodName>,
+    /// Only frames in these ranges, such as 14-185,187-198.
+    #[arg(long, value_name = "RANGES")]
+    frames: Option<FrameRanges>,
+    /// Of so many frames one.
+    #[arg(long, value_name = "N", default_value = "1")]
+    every: std::num::NonZeroUsize,
+    /// Write the rows as JSON.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Draw the found hands over every tenth frame and the five worst.
+    #[arg(long, value_name = "DIR")]
+    sheets: Option<PathBuf>,
+}
+
+/// The JSON report.
+#[derive(Serialize)]
+struct Rows<'a> {
+    rows: Vec<&'a Row>,
+}
+
+/// Evaluates the takes; `learn` trains the product's model for a rig.
+///
+/// # Errors
+/// Data that is not as expected; names the file.
+pub fn run(arguments: &Arguments, learn: &Learn<'_>) -> Result<()> {
+    let mut folders = take::takes_in(&arguments.data)?;
+    let name = |folder: &Path| folder.file_name().map(|name| name.to_string_lossy().into_owned());
+    for wanted in &arguments.take {
+        let is_there = folders.iter().any(|folder| name(folder).as_ref() == Some(wanted));
+        ensure!(is_there, "{}: no take '{wanted}'", arguments.data.display());
+    }
+    if !arguments.take.is_empty() {
+        folders.retain(|folder| name(folder).is_some_and(|name| arguments.take.contains(&name)));
+    }
+    let (mut lines, mut notes) = (Vec::new(), Vec::new());
+    for folder in &folders {
+        let take = Take::read(folder)?;
+        let reference = Reference::read(folder, &take.camera_names())?;
+        let bar = progress::Bar::new();
+        let evaluation = Evaluation {
+            arguments,
+            take: &take,
+            reference: &reference,
+            scorer: Scorer::new(&reference),
+            progress: &bar,
+        };
+        evaluation.run(learn, &mut lines, &mut notes)?;
+        if let Some(constant) = evaluation.scorer.constant_joints_mm() {
+            notes.push(format!("{}: best constant hand at the wrist {constant:.1} mm", take.name));
+        }
+    }
+    if let Some(path) = &arguments.json {
+        let rows = Rows { rows: lines.iter().map(|line| &line.row).collect() };
+        files::write_whole(path, (serde_json::to_string_pretty(&rows)? + "\n").as_bytes())?;
+    }
+    files::print(&format!("{}\n{}\n", report::table(&lines), notes.join("\n")))
+}
+
+/// One take, evaluated.
+struct Evaluation<'a> {
+    arguments: &'a Arguments,
+    take: &'a Take,
+    reference: &'a Reference,
+    scorer: Scorer<'a>,
+    progress: &'a dyn Progress,
+}
+
+impl Evaluation<'_> {
+    /// A line for each of the cameras used, the input and the method; notes beside them.
+    fn run(&self, learn: &Learn<'_>, lines: &mut Vec<Line>, notes: &mut Vec<String>) -> Result<()> {
+        let methods = match &*self.arguments.method {
+            [] => &MethodName::ALL[..],
+            some => some,
+        };
+        for views in subsets::of(&self.take.camera_names(), &self.arguments.cameras)? {
+            let with_frames: Vec<MethodName> = methods
+                .iter()
+                .copied()
+                .filter(|method| {
+                    self.inputs(*method)
+                        .any(|input| !self.frames(*method, &views, input).is_empty())
+                })
+                .collect();
+            let prepared = Prepared::new(self.take, &views, self.reference, &with_frames, learn);
+            for input in Input::ALL {
+                for &name in methods.iter().filter(|name| self.inputs(**name).any(|of| of == input))
+                {
+                    let frames = self.frames(name, &views, input);
+                    if !frames.is_empty() {
+                        let sequence =
+                            Sequence { take: self.take, views: &views, input, frames: &frames };
+                        notes.extend(self.line(&sequence, &prepared, name, lines)?);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The inputs of a method that are asked for.
+    fn inputs(&self, method: MethodName) -> impl Iterator<Item = Input> {
+        let only = self.arguments.input;
+        let inputs = method.inputs().iter().copied();
+        inputs.filter(move |input| only.is_none_or(|only| only == *input))
+    }
+
+    /// The frames that are asked for; of landmarks those that any of the cameras has some of.
+    fn frames(&self, method: MethodName, views: &[usize], input: Input) -> Vec<FrameName> {
+        let frames = match method {
+            MethodName::Landmarks if views.len() < 2 => Vec::new(),
+            MethodName::Landmarks => {
+                let seen = views.iter().flat_map(|&view| self.reference.landmarks[view].keys());
+                let mut frames: Vec<FrameName> = seen.cloned().collect();
+                frames.sort();
+                frames.dedup();
+                frames
+            }
+            _ => self.take.frames(views, input),
+        };
+        let ranges = self.arguments.frames.as_ref();
+        let wanted = frames.into_iter().filter(|frame| ranges.is_none_or(|r| r.hold(frame)));
+        wanted.step_by(self.arguments.every.get()).collect()
+    }
+
+    /// Runs and scores one method.
+    fn line(
+        &self,
+        sequence: &Sequence<'_>,
+        prepared: &Prepared<'_>,
+        name: MethodName,
+        lines: &mut Vec<Line>,
+    ) -> Result<Vec<String>> {
+        let method = prepared.method(name);
+        let cameras: Vec<String> = sequence.cameras().into_iter().map(|c| c.name).collect();
+        let title =
+            [&self.take.name, &*cameras.join("+"), sequence.input.name(), method.name()].join("-");
+        self.progress.begin(&title, sequence.frames.len());
+        let outcomes = method.run(sequence, self.progress)?;
+        let scores = self.scorer.frames(sequence, &outcomes)?;
+        let row = score::row(sequence, method.name(), &outcomes, &scores)?;
+        let of_view = |view: usize| -> Vec<f64> {
+            scores.iter().flat_map(|score| score.reprojection[view].iter().copied()).collect()
+        };
+        let views = 0..sequence.views.len();
+        let reprojection_by_view = views.map(|view| percentile(&of_view(view), 50)).collect();
+        lines.push(Line { row, reprojection_by_view });
+        let mut notes = refusals(&title, &outcomes);
+        if let Some(folder) = &self.arguments.sheets {
+            let path = folder.join(format!("{title}.png"));
+            let written = sheet::write(&path, sequence, &outcomes, &scores);
+            notes.push(written.with_context(|| path.display().to_string())?);
+        }
+        Ok(notes)
+    }
+}
+
+/// Why frames were refused, and how many for each reason.
+fn refusals(title: &str, outcomes: &[Outcome]) -> Vec<String> {
+    let mut reasons = BTreeMap::new();
+    for error in outcomes.iter().filter_map(|outcome| outcome.found.as_ref().err()) {
+        *reasons.entry(format!("{error:#}")).or_insert(0) += 1;
+    }
+    reasons.iter().map(|(reason, count)| format!("{title}: {count} refused: {reason}")).collect()
+}

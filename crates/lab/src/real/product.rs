@@ -1,0 +1,136 @@
+//! The product as its programs are used: a model trained for the take's cameras, then frame by frame
+//! `phalanx estimate`, with and without `--refine`.
+
+use anyhow::Result;
+use image::{DynamicImage, GrayImage, RgbImage};
+use phalanx::{Estimate, Estimator, Picture, Progress, Refiner, Segmenter, Workspace};
+use phalanx_camera::{Rig, Volume};
+use phalanx_hand::HandShape;
+use phalanx_refine::{Doubt, Refined, Refinement};
+use phalanx_segmentation::{Evidence, SkinModel};
+
+use super::deviation::PoseCovariance;
+use super::method::{Found, Method, Outcome, Sequence, each_frame};
+use super::take::{Input, Take};
+
+/// Side of the cube in which the hand works by the default of `phalanx import-calibration`, mm.
+const SIDE_MM: f64 = 300.0;
+
+/// Overlap below which `phalanx estimate` doubts a refined hand.
+const GOOD_OVERLAP: f64 = 0.8;
+
+/// Learns an estimator, which knows how it errs, for a rig and a hand.
+pub type Learn<'a> = dyn Fn(&Rig, &HandShape) -> Result<Estimator> + 'a;
+
+/// A model for some of a take's cameras.
+pub struct Product {
+    estimator: Estimator,
+    refiner: Refiner,
+    skin: Segmenter,
+}
+
+impl Product {
+    /// Imports the take's calibration and learns for the cameras of these numbers.
+    ///
+    /// # Errors
+    /// Cameras for which no volume can be guessed, such as a single one, or nothing can be learnt.
+    pub fn learn(take: &Take, views: &[usize], learn: &Learn<'_>) -> Result<Self> {
+        let all: Vec<usize> = (0..take.cameras.len()).collect();
+        let volume = Volume::between(&take.cameras(&all), SIDE_MM)?;
+        let rig = Rig { cameras: take.cameras(views), volume };
+        let hand = HandShape { side: take.side, ..HandShape::adult() };
+        let estimator = learn(&rig, &hand)?;
+        let refinement = Refinement { doubt: Some(Doubt::default()), ..Refinement::default() };
+        let refiner = Refiner::for_estimator(&estimator, refinement)?;
+        Ok(Self { estimator, refiner, skin: Segmenter::Skin(SkinModel::builtin()) })
+    }
+
+    fn estimate(
+        &self,
+        input: Input,
+        pictures: &[DynamicImage],
+        workspace: &mut Workspace,
+    ) -> Result<Estimate> {
+        Ok(match input {
+            Input::Masks => {
+                let masks: Vec<GrayImage> = pictures.iter().map(DynamicImage::to_luma8).collect();
+                let masks: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
+                self.estimator.estimate(&masks, workspace)?
+            }
+            Input::Photographs => {
+                let images: Vec<RgbImage> = pictures.iter().map(DynamicImage::to_rgb8).collect();
+                let images: Vec<Picture<'_>> =
+                    images.iter().map(|image| Picture::Photograph(image, &self.skin)).collect();
+                self.estimator.estimate(&images, workspace)?
+            }
+        })
+    }
+
+    fn refine(&self, estimate: &Estimate, workspace: &Workspace) -> Result<Found> {
+        let evidence = self.refiner.evidence_of(workspace)?;
+        let hypotheses = match self.estimator.errors() {
+            Some(_) => self.estimator.hypotheses(estimate, self.refiner.starts())?,
+            None => Vec::new(),
+        };
+        let refined = self.refiner.refine_best(&evidence, estimate, &hypotheses)?.swap_remove(0);
+        let prior = self.refiner.prior(&estimate.pose, &estimate.std)?;
+        let covariance = PoseCovariance::new(prior.dofs(), &refined.covariance);
+        let (hand, rest) = (self.refiner.hand(), self.refiner.rest());
+        let found = Found::posed(hand, &refined.pose, rest, Some(&covariance));
+        Ok(Found { doubts: [forearm_doubts(estimate), fit_doubts(&refined)].concat(), ..found })
+    }
+}
+
+/// What `phalanx estimate` says of forearms.
+fn forearm_doubts(estimate: &Estimate) -> Vec<String> {
+    let doubt = |forearm: &phalanx_segmentation::Forearm| match forearm.evidence {
+        Evidence::Stump => Some("a forearm's end was guessed".to_owned()),
+        Evidence::Border if forearm.crossings > 1 => Some("more than one forearm".to_owned()),
+        Evidence::Border => None,
+    };
+    estimate.forearms.iter().filter_map(doubt).collect()
+}
+
+/// What `phalanx estimate --refine` says of a fit.
+fn fit_doubts(refined: &Refined) -> Vec<String> {
+    let overlaps = refined.overlaps.iter().filter(|&&overlap| overlap < GOOD_OVERLAP);
+    let doubts = overlaps.map(|overlap| format!("overlaps a silhouette by {overlap:.2} only"));
+    let unsettled = (!refined.converged).then(|| "stopped before it settled".to_owned());
+    doubts.chain(unsettled).collect()
+}
+
+/// `phalanx estimate`.
+pub struct Estimated<'a>(pub &'a Product);
+
+impl Method for Estimated<'_> {
+    fn name(&self) -> &'static str {
+        "estimate"
+    }
+
+    fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>> {
+        let Product { estimator, .. } = self.0;
+        let rest = estimator.rig().volume.rest_frame();
+        each_frame(sequence, progress, Workspace::default, |workspace, pictures| {
+            let estimate = self.0.estimate(sequence.input, pictures, workspace)?;
+            let covariance = PoseCovariance::independent(&estimate.std);
+            let found = Found::posed(estimator.hand(), &estimate.pose, &rest, Some(&covariance));
+            Ok(Found { doubts: forearm_doubts(&estimate), ..found })
+        })
+    }
+}
+
+/// `phalanx estimate --refine`.
+pub struct RefinedFrames<'a>(pub &'a Product);
+
+impl Method for RefinedFrames<'_> {
+    fn name(&self) -> &'static str {
+        "refined"
+    }
+
+    fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>> {
+        each_frame(sequence, progress, Workspace::default, |workspace, pictures| {
+            let estimate = self.0.estimate(sequence.input, pictures, workspace)?;
+            self.0.refine(&estimate, workspace)
+        })
+    }
+}
