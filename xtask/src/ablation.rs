@@ -17,7 +17,7 @@ use crate::sets::{self, Augment, Set, Test};
 use crate::{files, progress};
 
 const PAGE: &str = "docs/ablation.md";
-const PRESET: Preset = Preset::Balanced;
+const PRESET: Preset = Preset::Default;
 const TESTS: [Test; 2] = [Test::Unseen, Test::All];
 /// Of so many samples of a test one is looked at; shares no factor with the hands in `all`.
 const EVERY: usize = 17;

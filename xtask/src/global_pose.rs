@@ -17,7 +17,7 @@ use crate::{files, progress};
 
 const PAGE: &str = "docs/global.md";
 /// How the estimator is learnt.
-const PRESET: Preset = Preset::Balanced;
+const PRESET: Preset = Preset::Default;
 /// Of so many hands of the test one is looked at.
 const EVERY: usize = 5;
 

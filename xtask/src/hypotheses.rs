@@ -19,7 +19,7 @@ use crate::sets::{self, Augment, Set, Test};
 use crate::{files, progress};
 
 const PAGE: &str = "docs/hypotheses.md";
-const PRESET: Preset = Preset::Balanced;
+const PRESET: Preset = Preset::Default;
 /// Scenes from which an estimator learns how it errs.
 const ERROR_SCENES: usize = 5000;
 /// Poses named at most.

@@ -32,9 +32,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         }
     }
     let bar = progress::Bar::new();
-    let estimator = merged.context("there is no part")?.finish(&bar)?;
+    let merged = merged.context("there is no part")?;
+    let estimator = train::finish(merged, arguments.hypotheses, &bar)?;
     drop(bar);
-    let estimator =
-        if arguments.hypotheses { train::with_hypotheses(estimator)? } else { estimator };
     train::save(&estimator, &arguments.out)
 }

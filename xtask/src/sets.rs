@@ -1,8 +1,9 @@
 //! What is learnt from and what is tested on.
 
 use clap::ValueEnum;
-use glam::DVec3;
-use phalanx::{Border, Damage, Framing, Hands, ItemRandom, Scene, Scenes};
+use phalanx::{
+    Border, Damage, Framing, Hands, ItemRandom, PoseSource, Scene, SceneSampler, Scenes, Trainer,
+};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, coupled_pose, uncoupled_pose};
 
@@ -18,15 +19,11 @@ const BETWEEN_DEG: [f64; 6] = [7.5, 22.5, 37.5, 52.5, 67.5, 82.5];
 /// How far the bones and radii of other people's hands differ from the mean hand's.
 const SPREAD: f64 = 0.1;
 
-/// Seeds of everything random: poses, the angles that they are turned by, damage. No two have
-/// anything in common.
-const TRAIN_POSES: u64 = 1;
-const TRAIN_DAMAGE: u64 = 2;
+/// Seeds of tests: poses, the angles that they are turned by, damage. A [`SceneSampler`] has 1 and 2 to
+/// learn from, 6 and 7 where it is fresh.
 const TEST_POSES: u64 = 3;
 const TEST_ANGLES: u64 = 4;
 const TEST_DAMAGE: u64 = 5;
-const ERROR_POSES: u64 = 6;
-const ERROR_DAMAGE: u64 = 7;
 
 /// Poses of a hand, seen through a rig that may be damaged.
 pub(crate) struct Set<'a> {
@@ -86,11 +83,33 @@ pub(crate) fn clean<'a>(
     hand: &'a HandShape,
     poses: Vec<Pose>,
 ) -> Set<'a> {
-    Set { name, rig, hand, poses, damage: Damage::NONE, seed: TRAIN_DAMAGE }
+    let seed = SceneSampler::new(PoseSource::Centred).damage_seed;
+    Set { name, rig, hand, poses, damage: Damage::NONE, seed }
 }
 
 /// Scenes from which it is learnt how a preset's estimates err.
-pub(crate) const ERROR_SCENES: usize = 4000;
+pub(crate) const ERROR_SCENES: usize = Trainer::ERROR_SAMPLES;
+
+/// The sampler of training scenes, whose damage is of choice.
+fn sampler(poses: PoseSource, augment: Augment) -> SceneSampler {
+    let sampler = SceneSampler::new(poses);
+    match augment {
+        Augment::No => SceneSampler { damage: Damage::NONE, ..sampler },
+        Augment::Yes => sampler,
+    }
+}
+
+/// So many scenes of a sampler, their poses drawn.
+fn drawn<'a>(
+    name: &'static str,
+    sampler: &SceneSampler,
+    rig: &'a Rig,
+    hand: &'a HandShape,
+    samples: usize,
+) -> Set<'a> {
+    let poses = sampler.scenes(rig, hand, samples).poses().collect();
+    Set { name, rig, hand, poses, damage: sampler.damage.clone(), seed: sampler.damage_seed }
+}
 
 /// What a preset learns from that looks at hands so.
 pub(crate) fn for_preset<'a>(
@@ -99,64 +118,24 @@ pub(crate) fn for_preset<'a>(
     hand: &'a HandShape,
     samples: usize,
 ) -> Set<'a> {
-    match framing {
-        Framing::Picture => random(rig, hand, samples, Augment::Yes),
-        Framing::Window => placed(rig, hand, samples),
-    }
+    let name = match framing {
+        Framing::Picture => "random_augmented",
+        Framing::Window => "placed",
+    };
+    let sampler = SceneSampler::new(PoseSource::for_framing(framing));
+    drawn(name, &sampler, rig, hand, samples)
 }
 
 /// From what it learns how its estimates err.
 pub(crate) fn fresh_for<'a>(framing: Framing, rig: &'a Rig, hand: &'a HandShape) -> Set<'a> {
-    let size = rig.volume.size;
-    let fresh = fresh(rig, hand, ERROR_SCENES, Augment::Yes);
-    match framing {
-        Framing::Picture => fresh,
-        Framing::Window => {
-            let draw = |random: &mut ItemRandom| placed_pose(random, size);
-            Set { name: "placed", poses: independent(ERROR_SCENES, ERROR_POSES, draw), ..fresh }
-        }
-    }
+    let sampler = SceneSampler::new(PoseSource::for_framing(framing)).fresh();
+    drawn("fresh", &sampler, rig, hand, ERROR_SCENES)
 }
 
-/// How far the arm of [`placed`] hands leans in θ_X and in θ_Y, degrees.
-const LEAN_DEG: f64 = 30.0;
-
-/// How far the wrists of [`loosely_placed`] hands bend, degrees.
-const WRIST_DEG: [(Dof, [f64; 2]); 2] =
-    [(Dof::WristFlexion, [-30.0, 50.0]), (Dof::WristDeviation, [-25.0, 15.0])];
-
-/// A coupled pose with its wrist anywhere in the working volume, its arm leaning in θ_X and θ_Y.
-fn placed_pose(random: &mut ItemRandom, size_mm: DVec3) -> Pose {
-    let mut pose = coupled_pose(|| random.uniform());
-    for (dof, size) in [Dof::TX, Dof::TY, Dof::TZ].into_iter().zip(size_mm.to_array()) {
-        pose[dof] = random.between(-0.5 * size, 0.5 * size);
-    }
-    for dof in [Dof::ThetaX, Dof::ThetaY] {
-        pose[dof] = random.between(-LEAN_DEG, LEAN_DEG).to_radians();
-    }
-    pose
-}
-
-/// Hands anywhere in the rig's volume to learn from: [`random`] ones with augmentation, placed as
-/// those of [`Test::Placed`].
-pub(crate) fn placed<'a>(rig: &'a Rig, hand: &'a HandShape, samples: usize) -> Set<'a> {
-    let size = rig.volume.size;
-    let poses = independent(samples, TRAIN_POSES, |random| placed_pose(random, size));
-    Set { name: "placed", poses, ..random(rig, hand, 1, Augment::Yes) }
-}
-
-/// Hands as of [`placed`] with wrists that bend, as those of people who are not told to keep them straight.
+/// Hands anywhere in the rig's volume with wrists that bend, as those of people who are not told to keep
+/// them straight.
 pub(crate) fn loosely_placed<'a>(rig: &'a Rig, hand: &'a HandShape, samples: usize) -> Set<'a> {
-    let size = rig.volume.size;
-    let bent = |random: &mut ItemRandom| {
-        let mut pose = placed_pose(random, size);
-        for (dof, [low, high]) in WRIST_DEG {
-            pose[dof] = random.between(low, high).to_radians();
-        }
-        pose
-    };
-    let poses = independent(samples, TRAIN_POSES, bent);
-    Set { name: "loosely_placed", poses, ..random(rig, hand, 1, Augment::Yes) }
+    drawn("loosely_placed", &SceneSampler::new(PoseSource::AnywhereBent), rig, hand, samples)
 }
 
 /// Independent poses from the coupled prior to learn from, θ_Z uniform in 0° … 90°. A larger set
@@ -168,9 +147,11 @@ pub(crate) fn random<'a>(
     samples: usize,
     augment: Augment,
 ) -> Set<'a> {
-    let poses = independent(samples, TRAIN_POSES, |random| coupled_pose(|| random.uniform()));
-    let (name, damage) = random_damage(augment);
-    Set { name, rig, hand, poses, damage, seed: TRAIN_DAMAGE }
+    let name = match augment {
+        Augment::No => "random",
+        Augment::Yes => "random_augmented",
+    };
+    drawn(name, &sampler(PoseSource::Centred, augment), rig, hand, samples)
 }
 
 /// Samples like those of [`random`], none of which it holds: to learn how an estimator errs on what
@@ -181,46 +162,7 @@ pub(crate) fn fresh<'a>(
     samples: usize,
     augment: Augment,
 ) -> Set<'a> {
-    let poses = independent(samples, ERROR_POSES, |random| coupled_pose(|| random.uniform()));
-    let (name, damage) = random_damage(augment);
-    Set { name, rig, hand, poses, damage, seed: ERROR_DAMAGE }
-}
-
-/// The name and the damage of random sets.
-fn random_damage(augment: Augment) -> (&'static str, Damage) {
-    match augment {
-        Augment::No => ("random", Damage::NONE),
-        Augment::Yes => ("random_augmented", augmented()),
-    }
-}
-
-/// What training samples are damaged by.
-fn augmented() -> Damage {
-    Damage { hands: Hands::Each { spread: SPREAD }, border: Border::Ragged, ..turned(0.0, 3.0) }
-}
-
-/// A user's poses in place of the prior, gone through as often as it takes for so many samples, each
-/// damaged in its own way. Where they do not turn about the forearm, θ_Z is uniform in 0° … 90°.
-///
-/// # Panics
-/// If there are none.
-pub(crate) fn own_poses<'a>(
-    rig: &'a Rig,
-    hand: &'a HandShape,
-    motion: &[Pose],
-    samples: usize,
-) -> Set<'a> {
-    let turns = motion.iter().any(|pose| pose[Dof::ThetaZ] != motion[0][Dof::ThetaZ]);
-    let draw = |i: usize| {
-        let mut pose = motion[i % motion.len()];
-        if !turns {
-            let mut random = ItemRandom::new(TRAIN_POSES, i as u64);
-            pose[Dof::ThetaZ] = random.between(0.0, std::f64::consts::FRAC_PI_2);
-        }
-        pose
-    };
-    let poses = (0..samples).map(draw).collect();
-    Set { name: "poses_augmented", rig, hand, poses, damage: augmented(), seed: TRAIN_DAMAGE }
+    drawn("fresh", &sampler(PoseSource::Centred, augment).fresh(), rig, hand, samples)
 }
 
 /// Whether training samples are damaged.
@@ -306,8 +248,9 @@ impl Test {
                 independent(TEST_SAMPLES, TEST_POSES, |random| uncoupled_pose(|| random.uniform()))
             }
             Self::Placed => {
-                let size = rig.volume.size;
-                independent(TEST_SAMPLES, TEST_POSES, |random| placed_pose(random, size))
+                let anywhere = SceneSampler::new(PoseSource::Anywhere);
+                let sampler = SceneSampler { pose_seed: TEST_POSES, ..anywhere };
+                sampler.scenes(rig, hand, TEST_SAMPLES).poses().collect()
             }
             Self::Poses => outside(motion),
             _ => takes(&THETA_Z_DEG),

@@ -1,16 +1,17 @@
 //! `cargo xtask train`: learns an estimator and saves it.
 
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
-use phalanx::{Estimator, Framing, Preset, Regressor, Scenes, Shard, Training};
+use phalanx::{Estimator, Framing, Part, Preset, Progress, Regressor, Shard, Trainer, Training};
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
 
 use crate::data_set::DataSet;
 use crate::held_out::method::nystrom;
-use crate::sets::{self, Augment, Set};
+use crate::sets::{self, Augment};
 use crate::table1::{PaperCounts, TableMethod};
 use crate::{files, memory, progress};
 
@@ -54,7 +55,7 @@ pub(crate) struct Arguments {
     augment: bool,
     /// With `--data-set random`, do the i-th of n equal parts of the work and write it to `--out`;
     /// `cargo xtask merge` joins the parts.
-    #[arg(long, value_name = "i/n", value_parser = shard, requires = "out")]
+    #[arg(long, value_name = "i/n", value_parser = Shard::from_str, requires = "out")]
     shard: Option<Shard>,
     /// With `--preset`, learn too how estimates err, from 4,000 further scenes: refinement then tries
     /// other poses where one is not enough.
@@ -101,7 +102,7 @@ impl PresetName {
     pub(crate) fn preset(self) -> Preset {
         match self {
             Self::Fast => Preset::Fast,
-            Self::Default => Preset::Balanced,
+            Self::Default => Preset::Default,
             Self::Best => Preset::Best,
         }
     }
@@ -112,12 +113,6 @@ const MODEL: &str = "target/hand.phalanx";
 
 /// Random poses that are learnt from, unless it is said how many.
 const RANDOM_SAMPLES: usize = 20_000;
-
-/// Which part of a training this run does, as `i/n`.
-fn shard(text: &str) -> Result<Shard> {
-    let (index, count) = text.split_once('/').context("not of the form i/n, such as 1/4")?;
-    Ok(Shard::new(index.parse()?, count.parse()?)?)
-}
 
 /// The regressor, with the paper's counts where it selects; dense kernel regression is that of
 /// [`Training`], for pictures that were not drawn.
@@ -173,60 +168,41 @@ fn random(arguments: &Arguments, rig: &Rig, hand: &HandShape) -> Result<()> {
         method => regressor(method, PaperCounts::paper(rig.cameras.len(), set.name)),
     };
     let training = Training { regressor, ..Training::default() };
-    stream(&training, &set, arguments, rig, hand)
+    let shard = arguments.shard.unwrap_or(Shard::WHOLE);
+    let bar = progress::Bar::new();
+    let part = training.shard(rig, hand, &set, shard, &bar)?;
+    write(part, arguments, &bar)
 }
 
 /// Learns as a preset says, of the prior's poses or a file's.
 fn by_preset(preset: Preset, arguments: &Arguments, rig: &Rig, hand: &HandShape) -> Result<()> {
-    let samples = arguments.samples.unwrap_or(preset.scenes());
     let framing = arguments.framing.map_or_else(Framing::default, FramingName::framing);
-    let set = match (&arguments.poses, framing) {
-        (Some(path), _) => sets::own_poses(rig, hand, &files::poses(path)?.poses, samples),
-        (None, framing) => sets::for_preset(framing, rig, hand, samples),
-    };
-    let training = Training { framing, ..preset.training() };
-    stream(&training, &set, arguments, rig, hand)
+    let samples = arguments.samples.unwrap_or(preset.scenes());
+    let mut trainer = Trainer::preset(preset).framing(framing).samples(samples);
+    if let Some(path) = &arguments.poses {
+        trainer = trainer.recorded(files::poses(path)?.poses);
+    }
+    let shard = arguments.shard.unwrap_or(Shard::WHOLE);
+    let bar = progress::Bar::new();
+    let part = trainer.fit_shard(rig, hand, shard, &bar)?;
+    write(part, arguments, &bar)
 }
 
-/// Learns from scenes that stream by, all of them or a shard.
-fn stream(
-    training: &Training,
-    set: &Set<'_>,
-    arguments: &Arguments,
-    rig: &Rig,
-    hand: &HandShape,
-) -> Result<()> {
-    let bar = progress::Bar::new();
-    let part = training.shard(rig, hand, set, arguments.shard.unwrap_or(Shard::WHOLE), &bar)?;
-    let left_out = part.left_out();
+/// Writes the model, or a shard's part.
+fn write(part: Part, arguments: &Arguments, progress: &dyn Progress) -> Result<()> {
     if arguments.shard.is_none() {
         let out = arguments.out.as_deref().unwrap_or(MODEL.as_ref());
-        let estimator = part.finish(&bar)?;
-        drop(bar);
-        say_left_out(left_out, set.count());
-        let estimator = if arguments.hypotheses { with_hypotheses(estimator)? } else { estimator };
-        return save(&estimator, out);
+        return save(&finish(part, arguments.hypotheses, progress)?, out);
     }
-    drop(bar);
-    say_left_out(left_out, set.count());
     let out = arguments.out.as_deref().context("a shard has a place to go to")?;
     let bytes = part.to_bytes()?;
     files::write_whole(out, &bytes)?;
     files::print(&format!("{}: {} KiB\n", out.display(), bytes.len().div_ceil(1024)))
 }
 
-fn say_left_out(left_out: usize, all: usize) {
-    if left_out > 0 {
-        eprintln!("{left_out} of {all} samples could not be described");
-    }
-}
-
-/// An estimator that knows how it errs on what a preset learns from.
-pub(crate) fn with_hypotheses(estimator: Estimator) -> Result<Estimator> {
-    let (rig, hand) = (estimator.rig().clone(), estimator.hand().clone());
-    let fresh = sets::fresh_for(estimator.descriptor().sight().framing, &rig, &hand);
-    let bar = progress::Bar::new();
-    Ok(estimator.learn_errors(&fresh, &bar)?)
+/// The estimator of a whole training, with a model of its errors if that is asked for.
+pub(crate) fn finish(part: Part, hypotheses: bool, progress: &dyn Progress) -> Result<Estimator> {
+    Ok(if hypotheses { part } else { part.without_error_model() }.finish(progress)?)
 }
 
 /// The fast preset through windows, knowing how it errs, as `--preset fast --framing window --hypotheses`

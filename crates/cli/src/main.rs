@@ -5,6 +5,8 @@ mod estimate;
 mod import_calibration;
 mod input;
 mod output;
+mod progress;
+mod train;
 
 use std::process::ExitCode;
 
@@ -22,6 +24,10 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Learn a model for a rig from pictures that are drawn.
+    Train(train::Arguments),
+    /// Join the parts of a training that was run in shards.
+    Merge(train::MergeArguments),
     /// Estimate the pose of a hand from one picture per camera.
     Estimate(estimate::Arguments),
     /// Fit the proportions of a person's hand to pictures of it.
@@ -32,6 +38,8 @@ enum Command {
 
 fn main() -> ExitCode {
     let done = match Arguments::parse().command {
+        Command::Train(arguments) => train::train(&arguments),
+        Command::Merge(arguments) => train::merge(&arguments),
         Command::Estimate(arguments) => estimate::run(&arguments),
         Command::CalibrateHand(arguments) => calibrate_hand::run(&arguments),
         Command::ImportCalibration(arguments) => import_calibration::run(&arguments),

@@ -3,7 +3,7 @@
 use std::sync::Mutex;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use phalanx::Progress;
+use phalanx::{Losses, Progress};
 
 /// A bar on standard error with an estimate of the time that remains; nothing where that is no
 /// terminal.
@@ -35,6 +35,13 @@ impl Progress for Bar {
 
     fn step(&self) {
         self.0.lock().expect("no holder of the lock panics").inc(1);
+    }
+
+    fn lost(&self, losses: &Losses, scenes: usize) {
+        let bar = self.0.lock().expect("no holder of the lock panics");
+        bar.suspend(|| {
+            eprintln!("{} of {scenes} scenes could not be used: {losses}", losses.count())
+        });
     }
 }
 

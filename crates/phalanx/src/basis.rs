@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::regressor::{columns_of, evenly_spaced};
 use crate::{
-    Descriptor, Error, EvenlySpaced, Progress, Regressor, Result, Scenes, Training, describe_each,
-    describe_scenes, targets,
+    Descriptor, Error, EvenlySpaced, Losses, Progress, Regressor, Result, Scenes, Training,
+    describe_each, describe_scenes, targets,
 };
 
 /// What every part of a training must know before it begins; each finds it by itself.
@@ -50,11 +50,16 @@ impl Training {
         self.regressor.streams()?;
         let spaced = EvenlySpaced::new(scenes, Training::CODEBOOK_SCENES);
         let described = describe_each(rig, &spaced, self.sight(), progress)?;
-        let (contexts, failed): (Vec<_>, Vec<_>) = described.into_iter().partition(Result::is_ok);
-        let contexts: Vec<_> = contexts.into_iter().filter_map(Result::ok).collect();
+        let (mut contexts, mut losses) = (Vec::with_capacity(described.len()), Losses::default());
+        for (place, described) in described.into_iter().enumerate() {
+            match described {
+                Ok(described) => contexts.push(described),
+                Err(error) => losses.add(spaced.number(place), &error),
+            }
+        }
+        losses.check(spaced.count())?;
         if contexts.len() < 2 {
-            let reason = failed.into_iter().find_map(Result::err);
-            return Err(reason.unwrap_or(Error::TooFewPoses { found: contexts.len() }));
+            return Err(Error::TooFewPoses { found: contexts.len() });
         }
         progress.begin("cluster shape contexts", 1);
         let descriptor = self.descriptor(&contexts)?;
@@ -63,7 +68,8 @@ impl Training {
         let pilot = evenly_spaced(scenes.count(), self.regressor.pilot());
         progress.begin("render and describe", pilot.len());
         let described = describe_scenes(rig, scenes, &pilot, &descriptor, progress)?;
-        let (pilot, x) = described_ones(&pilot, described);
+        // These scenes come again, and are counted then.
+        let (pilot, x) = described_ones(&pilot, described, &mut Losses::default());
         let y = targets_of(scenes, &pilot);
         let reading = self.regressor.reading(&x, &y, &descriptor, progress)?;
         let chosen = evenly_spaced(pilot.len(), self.regressor.centres());
@@ -148,16 +154,19 @@ impl Basis {
     }
 }
 
-/// Which scenes could be described, and their descriptors.
+/// Which scenes could be described, and their descriptors; the others are lost.
 pub(crate) fn described_ones(
     numbers: &[usize],
     described: Vec<Result<Vec<f64>>>,
+    losses: &mut Losses,
 ) -> (Vec<usize>, Mat<f64>) {
-    let kept: Vec<(usize, Vec<f64>)> = numbers
-        .iter()
-        .zip(described)
-        .filter_map(|(&number, described)| Some((number, described.ok()?)))
-        .collect();
+    let mut kept: Vec<(usize, Vec<f64>)> = Vec::with_capacity(numbers.len());
+    for (&number, described) in numbers.iter().zip(described) {
+        match described {
+            Ok(x) => kept.push((number, x)),
+            Err(error) => losses.add(number, &error),
+        }
+    }
     let dim = kept.first().map_or(0, |(_, x)| x.len());
     let x = Mat::from_fn(dim, kept.len(), |row, i| kept[i].1[row]);
     (kept.into_iter().map(|(number, _)| number).collect(), x)

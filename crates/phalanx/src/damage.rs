@@ -7,12 +7,13 @@ use glam::{DAffine3, DQuat, DVec3};
 use image::GrayImage;
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{HandShape, Pose};
+use serde::{Deserialize, Serialize};
 
 use crate::{ItemRandom, Scene, View};
 
 /// How scenes differ from what the rig is made for. Each field that is zero leaves its part of the
 /// scene as it is. Angles are radians.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Damage {
     /// Whose hands are seen.
     pub hands: Hands,
@@ -26,7 +27,7 @@ pub struct Damage {
 }
 
 /// Whose hands are seen.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Hands {
     /// The hand that was given.
     Given,
@@ -46,7 +47,7 @@ pub enum Hands {
 }
 
 /// What happens to the silhouettes' borders.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Border {
     /// Nothing.
     Clean,
@@ -54,6 +55,20 @@ pub enum Border {
     /// side of the border flip, and 0.2 % of all pixels. Describing cleans it up again, as it
     /// does a photograph's mask.
     Ragged,
+}
+
+/// What estimators are meant to stand: a hand of its own for every scene, its bones and radii within
+/// 10 % of the given one's, as far as adults' differ; cameras turned by up to 3°, as far as a tripod that
+/// was touched; ragged silhouettes.
+impl Default for Damage {
+    fn default() -> Self {
+        Self {
+            hands: Hands::Each { spread: 0.1 },
+            camera_turn: 0.0..=3.0_f64.to_radians(),
+            camera_roll: 0.0,
+            border: Border::Ragged,
+        }
+    }
 }
 
 impl Damage {

@@ -108,6 +108,20 @@ pub enum Error {
         /// How many there are.
         found: usize,
     },
+    /// More training scenes than can be done without that some camera does not show.
+    #[error(
+        "{lost} of {scenes} training scenes cannot be used, more than {} %: {losses}; check where the rig's \
+         working volume and cameras are",
+        100.0 * crate::Losses::MOST
+    )]
+    TooManyLost {
+        /// How many are lost.
+        lost: usize,
+        /// Of how many.
+        scenes: usize,
+        /// The cameras and reasons.
+        losses: String,
+    },
     /// Not one picture per camera.
     #[error(
         "expected one picture per camera, {} ({}), found {found}",
@@ -200,6 +214,12 @@ pub enum Error {
         index: usize,
         /// How many there are.
         count: usize,
+    },
+    /// Text that names no shard.
+    #[error("'{text}' is no shard: write i/n, such as 1/4")]
+    NoShard {
+        /// The text.
+        text: String,
     },
     /// A regressor that cannot be learnt in shards.
     #[error("{regressor} cannot be learnt in shards: {reason}")]

@@ -134,17 +134,22 @@ impl Gathered {
     }
 
     /// The regression that all scenes amount to.
-    pub(crate) fn fit(&self, basis: &Basis, progress: &dyn Progress) -> Result<Regression> {
+    pub(crate) fn fit(self, basis: &Basis, progress: &dyn Progress) -> Result<Regression> {
         match self {
             Self::Sums(sums) => {
                 progress.begin("fit the regressor", 1);
-                let regression = fit_sums(sums, basis)?;
+                let regression = fit_sums(&sums, basis)?;
                 progress.step();
                 Ok(regression)
             }
             Self::Samples(blocks) => {
-                let x = blocks.values().map(|samples| &*samples.x).collect::<Vec<_>>().concat();
-                let y = blocks.values().map(|samples| &*samples.y).collect::<Vec<_>>().concat();
+                let count = |length: fn(&Samples) -> usize| blocks.values().map(length).sum();
+                let mut x = Vec::with_capacity(count(|samples| samples.x.len()));
+                let mut y = Vec::with_capacity(count(|samples| samples.y.len()));
+                for mut samples in blocks.into_values() {
+                    x.append(&mut samples.x);
+                    y.append(&mut samples.y);
+                }
                 let count = y.len() / Dof::COUNT;
                 let x = MatRef::from_column_major_slice(&x, basis.read(), count);
                 let y = MatRef::from_column_major_slice(&y, Dof::COUNT, count);

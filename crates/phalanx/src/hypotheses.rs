@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use crate::global_pose::PLACED;
 use crate::{
-    Error, Estimate, Estimator, Framing, Progress, Refiner, Result, Scenes, describe_scenes,
-    targets,
+    Error, Estimate, Estimator, Framing, Losses, Progress, Refiner, Result, Scenes,
+    describe_scenes, targets,
 };
 
 /// Scenes with estimates near to one that say how such an estimate errs.
@@ -43,23 +43,25 @@ impl Estimator {
     /// independent ones from the prior of the training.
     ///
     /// # Errors
-    /// A camera that cannot draw; the first scene's reason, if no scene can be described.
+    /// A camera that cannot draw; no scene, or more than [`Losses::MOST`] that cannot be described.
     pub fn learn_errors(self, scenes: &dyn Scenes, progress: &dyn Progress) -> Result<Self> {
         progress.begin("learn what is left open", scenes.count());
         let all: Vec<usize> = (0..scenes.count()).collect();
         let described = describe_scenes(self.rig(), scenes, &all, self.descriptor(), progress)?;
-        let (mut numbers, mut descriptors, mut first) = (Vec::new(), Vec::new(), None);
+        let (mut numbers, mut descriptors) = (Vec::new(), Vec::new());
+        let mut losses = Losses::default();
         for (number, described) in described.into_iter().enumerate() {
             match described {
                 Ok(x) => {
                     numbers.push(number);
                     descriptors.push(x);
                 }
-                Err(error) => first = first.or(Some(error)),
+                Err(error) => losses.add(number, &error),
             }
         }
+        losses.check(scenes.count())?;
         if numbers.is_empty() {
-            return Err(first.unwrap_or(Error::TooFewPoses { found: 0 }));
+            return Err(Error::TooFewPoses { found: 0 });
         }
         let predict = |x: &Vec<f64>| {
             let (mut pose, mut std) = (Pose::REST, [0.0; Dof::COUNT]);

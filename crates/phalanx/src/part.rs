@@ -8,7 +8,10 @@ use crate::basis::{Basis, described_ones, targets_of};
 use crate::container::Container;
 use crate::gathered::Gathered;
 use crate::shard::{BLOCK, scenes_of};
-use crate::{Error, Estimator, Progress, Result, Scenes, Shard, Training, describe_scenes};
+use crate::{
+    Error, Estimator, Losses, Progress, Result, SceneSampler, Scenes, Shard, Training,
+    describe_scenes,
+};
 
 const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 5 };
 
@@ -20,15 +23,24 @@ const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", 
 pub struct Part {
     basis: Basis,
     scenes: usize,
-    /// The blocks that are in the sums, ascending, and how many scenes could not be described.
+    /// The blocks that are in the sums, ascending, and the scenes that could not be described.
     blocks: Vec<usize>,
-    left_out: usize,
+    losses: Losses,
     gathered: Gathered,
+    /// What the error model is fitted to, if there is to be one.
+    errors: Option<ErrorScenes>,
+}
+
+/// Scenes that an error model is fitted to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ErrorScenes {
+    pub(crate) sampler: SceneSampler,
+    pub(crate) count: usize,
 }
 
 impl Training {
     /// Learns from scenes of a rig, of which there may be any number: none is kept. Scenes that some
-    /// camera does not show well enough are left out; [`Part::left_out`] tells how many.
+    /// camera does not show well enough are left out; [`Part::losses`] tells how many, and why.
     ///
     /// A run does the `shard` of all blocks of scenes that it is told; runs that differ in nothing
     /// else give parts which, merged in any order, [finish](Part::finish) to the bytes of a single
@@ -39,8 +51,9 @@ impl Training {
     /// the estimator takes pictures to be of, whatever the scenes are.
     ///
     /// # Errors
-    /// An unusable rig or hand, fewer than two scenes that can be described, a regressor that
-    /// needs its samples at once, or what the stages report.
+    /// An unusable rig or hand, fewer than two scenes that can be described, more than
+    /// [`Losses::MOST`] that cannot, a regressor that needs its samples at once, or what the stages
+    /// report.
     pub fn shard(
         &self,
         rig: &Rig,
@@ -55,15 +68,15 @@ impl Training {
         let columns = basis.columns()?;
         let blocks: Vec<usize> = shard.blocks(scenes.count()).collect();
         let gathered = Gathered::new(&basis, &columns);
-        let mut part = Part { gathered, scenes: scenes.count(), left_out: 0, blocks, basis };
+        let (losses, errors) = (Losses::default(), None);
+        let mut part = Part { gathered, scenes: scenes.count(), losses, blocks, basis, errors };
         let shown = part.blocks.iter().map(|&block| scenes_of(block, part.scenes).len()).sum();
         progress.begin("render, describe, sum", shown);
         for &block in &part.blocks {
             let numbers: Vec<usize> = scenes_of(block, part.scenes).collect();
             let descriptor = &part.basis.descriptor;
             let described = describe_scenes(rig, scenes, &numbers, descriptor, progress)?;
-            let (kept, x) = described_ones(&numbers, described);
-            part.left_out += numbers.len() - kept.len();
+            let (kept, x) = described_ones(&numbers, described, &mut part.losses);
             if kept.is_empty() {
                 continue;
             }
@@ -75,9 +88,19 @@ impl Training {
 }
 
 impl Part {
-    /// How many scenes of all could not be described so far.
-    pub fn left_out(&self) -> usize {
-        self.left_out
+    /// The scenes that could not be described so far.
+    pub fn losses(&self) -> &Losses {
+        &self.losses
+    }
+
+    /// The same part, whose estimator has no model of its errors and so no hypotheses.
+    #[must_use]
+    pub fn without_error_model(self) -> Self {
+        self.with_error_scenes(None)
+    }
+
+    pub(crate) fn with_error_scenes(self, errors: Option<ErrorScenes>) -> Self {
+        Self { errors, ..self }
     }
 
     /// Do the numbers of scenes fit each other, and are there no more than training makes?
@@ -108,6 +131,7 @@ impl Part {
             ("their numbers of scenes", self.scenes != other.scenes),
             ("their regressors", self.basis.regressor != other.basis.regressor),
             ("what they learn from", self.basis != other.basis),
+            ("what their errors are learnt from", self.errors != other.errors),
         ] {
             if differ {
                 return Err(Error::ForeignPart { what });
@@ -121,23 +145,34 @@ impl Part {
         self.gathered.merge(other.gathered)?;
         self.blocks.extend(other.blocks);
         self.blocks.sort_unstable();
-        self.left_out += other.left_out;
+        self.losses.merge(other.losses);
         Ok(())
     }
 
-    /// The estimator, once all parts are merged.
+    /// The estimator, once all parts are merged; of a [`Trainer`](crate::Trainer)'s parts with the model
+    /// of its errors.
     ///
     /// # Errors
-    /// A missing part, or what the regressor reports.
+    /// A missing part, more than [`Losses::MOST`] of the scenes lost, or what the regressor reports.
     pub fn finish(self, progress: &dyn Progress) -> Result<Estimator> {
         let all = self.scenes.div_ceil(BLOCK);
         if let Some(missing) = (0..all).find(|block| self.blocks.get(*block) != Some(block)) {
             let missing = scenes_of(missing, self.scenes);
             return Err(Error::MissingPart { first: missing.start, last: missing.end - 1 });
         }
+        self.losses.check(self.scenes)?;
+        if self.losses.count() > 0 {
+            progress.lost(&self.losses, self.scenes);
+        }
         let regression = self.gathered.fit(&self.basis, progress)?;
         let Basis { rig, hand, descriptor, .. } = self.basis;
-        Estimator::from_parts(rig, hand, descriptor, regression)
+        let estimator = Estimator::from_parts(rig.clone(), hand.clone(), descriptor, regression)?;
+        match self.errors {
+            Some(ErrorScenes { sampler, count }) => {
+                estimator.learn_errors(&sampler.scenes(&rig, &hand, count), progress)
+            }
+            None => Ok(estimator),
+        }
     }
 
     /// The part's file.
@@ -158,9 +193,10 @@ impl Part {
         part.basis.rig.validate()?;
         part.basis.hand.validate()?;
         part.check_numbers()?;
+        part.errors.iter().try_for_each(|errors| errors.sampler.check())?;
         let columns = part.basis.columns()?;
         let shown: usize = part.blocks.iter().map(|&b| scenes_of(b, part.scenes).len()).sum();
-        let samples = shown.checked_sub(part.left_out);
+        let samples = shown.checked_sub(part.losses.count());
         part.gathered.check(&part.basis, &columns, &part.blocks, samples)?;
         Ok(part)
     }
@@ -203,7 +239,7 @@ mod tests {
         let spoils: [fn(&mut Part); 9] = [
             |part| part.blocks = vec![0, 0],
             |part| part.blocks = vec![1],
-            |part| part.left_out = usize::MAX,
+            |part| part.losses.add(0, &Error::TooFewPoses { found: 0 }),
             |part| part.basis.pilot.swap(0, 1),
             |part| part.basis.pilot_x.truncate(3),
             |part| part.scenes = usize::MAX,

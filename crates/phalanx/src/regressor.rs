@@ -123,6 +123,14 @@ impl Regressor {
         matches!(self, Self::Network(_))
     }
 
+    /// Bytes that are kept of each sample of so many views.
+    pub(crate) fn bytes(&self, views: usize) -> usize {
+        let Self::Network(fitter) = self else { return 0 };
+        // Of every view's code, and of what is beside it.
+        let read = views.saturating_mul(2 * fitter.components);
+        read.saturating_mul(size_of::<f32>()) + 2 * Dof::COUNT * size_of::<f64>()
+    }
+
     /// Refuses a regressor that cannot be learnt from scenes that stream by.
     pub(crate) fn streams(&self) -> Result<()> {
         if self.needs_samples() { Ok(()) } else { self.summed().map(drop) }

@@ -77,6 +77,11 @@ impl<'a> EvenlySpaced<'a> {
     pub fn new(all: &'a dyn Scenes, most: usize) -> Self {
         Self { all, numbers: evenly_spaced(all.count(), most) }
     }
+
+    /// The number among all scenes of one of these.
+    pub fn number(&self, place: usize) -> usize {
+        self.numbers[place]
+    }
 }
 
 impl Scenes for EvenlySpaced<'_> {

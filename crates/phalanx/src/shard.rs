@@ -1,6 +1,7 @@
 //! How a training is spread over runs.
 
 use std::ops::Range;
+use std::str::FromStr;
 
 use crate::{Error, Result};
 
@@ -30,12 +31,30 @@ impl Shard {
         Err(Error::Shard { index, count })
     }
 
+    /// How many of so many scenes this run does.
+    pub(crate) fn scenes(self, scenes: usize) -> usize {
+        self.blocks(scenes).map(|block| scenes_of(block, scenes).len()).sum()
+    }
+
     /// The blocks of this run, of so many scenes; none where there are more runs than blocks.
     pub(crate) fn blocks(self, scenes: usize) -> Range<usize> {
         let blocks = scenes.div_ceil(BLOCK);
         // No product of two lengths exceeds 128 bits.
         let upto = |shards: usize| (shards as u128 * blocks as u128 / self.count as u128) as usize;
         upto(self.index - 1)..upto(self.index)
+    }
+}
+
+/// `i/n`, such as `1/4`.
+impl FromStr for Shard {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let numbers = text.split_once('/').and_then(|(index, count)| {
+            Some((index.trim().parse().ok()?, count.trim().parse().ok()?))
+        });
+        let (index, count) = numbers.ok_or_else(|| Error::NoShard { text: text.to_owned() })?;
+        Self::new(index, count)
     }
 }
 
@@ -67,6 +86,14 @@ mod tests {
     fn more_shards_than_numbers_of_blocks_do_no_harm() {
         let last = Shard::new(usize::MAX, usize::MAX).unwrap();
         assert_eq!(last.blocks(5000), 4..5);
+    }
+
+    #[test]
+    fn shards_are_read_as_i_of_n() {
+        assert_eq!("2/3".parse::<Shard>().unwrap(), Shard::new(2, 3).unwrap());
+        for text in ["", "1", "0/2", "3/2", "1/2/3", "a/b"] {
+            assert!(text.parse::<Shard>().is_err(), "{text}");
+        }
     }
 
     #[test]

@@ -97,6 +97,17 @@ impl Training {
         Estimator::from_parts(rig.clone(), hand.clone(), descriptor, fit.model)
     }
 
+    /// Bytes that are held at most, roughly: the shape contexts of the scenes that codebooks are learnt
+    /// from, or what is kept of the samples.
+    pub(crate) fn bytes(&self, views: usize, codebook: usize, pilot: usize, own: usize) -> usize {
+        /// Of one view of a scene: a contour of some 300 points.
+        const CONTEXTS: usize = 300 * phalanx_shape_context::BINS * size_of::<f32>();
+        let contexts = codebook.saturating_mul(views).saturating_mul(CONTEXTS);
+        let code = views.saturating_mul(self.vocabulary.centres * phalanx_shape_context::BINS);
+        let piloted = pilot.saturating_mul(code).saturating_mul(2 * size_of::<f64>());
+        contexts.max(piloted).saturating_add(own.saturating_mul(self.regressor.bytes(views)))
+    }
+
     /// How pictures are looked at.
     pub(crate) fn sight(&self) -> Sight {
         Sight { orientation: self.orientation, framing: self.framing }

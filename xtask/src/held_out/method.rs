@@ -58,10 +58,10 @@ impl Method {
     pub(crate) fn preset(self) -> Option<(Preset, Answer)> {
         match self {
             Self::Fast => Some((Preset::Fast, Answer::Estimate)),
-            Self::Preset => Some((Preset::Balanced, Answer::Estimate)),
+            Self::Preset => Some((Preset::Default, Answer::Estimate)),
             Self::Best => Some((Preset::Best, Answer::Estimate)),
-            Self::Refined => Some((Preset::Balanced, Answer::Refined)),
-            Self::RefinedOwnHand => Some((Preset::Balanced, Answer::RefinedOwnHand)),
+            Self::Refined => Some((Preset::Default, Answer::Refined)),
+            Self::RefinedOwnHand => Some((Preset::Default, Answer::RefinedOwnHand)),
             _ => None,
         }
     }

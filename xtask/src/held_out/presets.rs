@@ -76,7 +76,7 @@ pub(crate) fn name(preset: Preset, answer: Answer) -> &'static str {
         (Answer::Refined, _) => "refined",
         (Answer::RefinedOwnHand, _) => "refined_own_hand",
         (Answer::Estimate, Preset::Fast) => "fast",
-        (Answer::Estimate, Preset::Balanced) => "preset",
+        (Answer::Estimate, Preset::Default) => "preset",
         (Answer::Estimate, Preset::Best) => "best",
     }
 }
@@ -132,7 +132,7 @@ impl Learnt {
         let set = sets::for_preset(framing, &rig, &ground.hand, preset.scenes());
         let training = Training { framing, ..preset.training() };
         let part = training.shard(&rig, &ground.hand, &set, Shard::WHOLE, progress)?;
-        let samples = set.count() - part.left_out();
+        let samples = set.count() - part.losses().count();
         let mut estimator = part.finish(progress)?;
         if refines(&answers) {
             let fresh = sets::fresh_for(framing, &rig, &ground.hand);

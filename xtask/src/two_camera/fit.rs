@@ -55,9 +55,6 @@ pub(super) fn learn(
     let training = Training { framing: Framing::Window, ..Preset::Fast.training() };
     let set = sets::loosely_placed(rig, hand, samples);
     let part = training.shard(rig, hand, &set, Shard::WHOLE, progress)?;
-    if part.left_out() > 0 {
-        eprintln!("{} of {samples} samples could not be described", part.left_out());
-    }
     let refiner = Refiner::new(rig, hand, &set.poses, Refinement::of_noise(NOISE_PX))?;
     Ok(Learnt { estimator: part.finish(progress)?, refiner })
 }

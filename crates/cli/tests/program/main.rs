@@ -5,3 +5,4 @@ mod desk;
 mod estimates;
 mod refinements;
 mod refusals;
+mod trainings;

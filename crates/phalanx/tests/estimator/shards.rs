@@ -1,7 +1,8 @@
 //! Training in shards: the same bytes however it is cut, and clear refusals.
 
 use phalanx::{
-    Damage, Error, OrientationRule, Part, Regressor, Scene, Scenes, Shard, Silent, Training,
+    Damage, Error, LossReason, OrientationRule, Part, Preset, Regressor, Scene, Scenes, Shard,
+    Silent, Trainer, Training,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, coupled_pose};
@@ -131,4 +132,57 @@ fn a_damaged_part_is_refused() {
     let model = b"PHALANX\0and so on";
     let error = Part::from_bytes(model).unwrap_err();
     assert!(error.to_string().starts_with("not a phalanx training part"), "{error}");
+}
+
+#[test]
+fn shards_of_a_preset_are_one_run_with_its_error_model() {
+    let (rig, hand) = (top(), HandShape::adult());
+    let trainer = Trainer::preset(Preset::Fast).samples(1100).error_samples(60);
+    let shard = |index, count| {
+        let shard = Shard::new(index, count).unwrap();
+        trainer.fit_shard(&rig, &hand, shard, &Silent).unwrap()
+    };
+    let mut merged = shard(2, 2);
+    merged.merge(Part::from_bytes(&shard(1, 2).to_bytes().unwrap()).unwrap()).unwrap();
+    let merged = merged.finish(&Silent).unwrap();
+    assert!(merged.errors().is_some());
+    assert_eq!(merged, trainer.fit(&rig, &hand, &Silent).unwrap());
+}
+
+/// Poses of which every so-manieth is out of sight.
+struct OutOfSight {
+    all: Random,
+    every: usize,
+}
+
+impl Scenes for OutOfSight {
+    fn count(&self) -> usize {
+        self.all.count
+    }
+
+    fn scene(&self, number: usize) -> Scene {
+        let mut scene = self.all.scene(number);
+        if number % self.every == 3 {
+            scene.pose[phalanx_hand::Dof::TX] = 5000.0;
+        }
+        scene
+    }
+}
+
+#[test]
+fn lost_scenes_are_counted_with_a_reason_and_too_many_refused() {
+    let training = Training { regressor: linear(), ..desk::training(OrientationRule::default()) };
+    let learn = |every: usize| {
+        let scenes = OutOfSight { all: Random::new(200), every };
+        training.shard(&scenes.all.rig, &scenes.all.hand, &scenes, Shard::WHOLE, &Silent)
+    };
+    let part = learn(40).unwrap();
+    let lost: Vec<_> = part.losses().iter().collect();
+    assert_eq!(lost, [("top", LossReason::NoHand, 5)]);
+    assert_eq!(Part::from_bytes(&part.to_bytes().unwrap()).unwrap(), part);
+    assert!(part.finish(&Silent).is_ok());
+    let message = learn(10).unwrap_err().to_string();
+    let expected = "20 of 200 training scenes cannot be used, more than 5 %: camera 'top': no hand";
+    assert!(message.starts_with(expected), "{message}");
+    assert!(message.contains("(scene 3: "), "{message}");
 }

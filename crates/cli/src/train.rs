@@ -1,0 +1,257 @@
+//! `phalanx train` and `phalanx merge`.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use clap::{Args, ValueEnum};
+use phalanx::{Cost, Estimator, Framing, Losses, Part, Preset, Progress, Shard, Trainer};
+use phalanx_camera::Rig;
+use phalanx_hand::{HandShape, Pose, PoseTable};
+
+use crate::progress::Bar;
+use crate::{input, output};
+
+/// The rig of the examples: three cameras about a desk, `side`, `top` and `other_side`.
+const DESK: &str = include_str!("../fixtures/desk.toml");
+
+/// How many samples may be asked for.
+const SAMPLES: std::ops::RangeInclusive<usize> = 100..=10_000_000;
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The cameras and the working volume, TOML; three cameras about a desk by default.
+    #[arg(long, value_name = "FILE.toml")]
+    rig: Option<PathBuf>,
+    /// Train for these cameras of the rig only: names separated by commas.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    cameras: Vec<String>,
+    /// The hand, TOML; a mean adult's by default.
+    #[arg(long, value_name = "FILE.toml")]
+    hand: Option<PathBuf>,
+    /// How much time the model is worth.
+    #[arg(long, value_enum, default_value_t)]
+    preset: PresetName,
+    /// What of the pictures is looked at.
+    #[arg(long, value_enum, default_value_t)]
+    framing: FramingName,
+    /// Scenes to learn from; the preset's number by default.
+    #[arg(long, value_name = "N", value_parser = samples)]
+    samples: Option<usize>,
+    /// Learn from these poses in place of random ones: CSV, degrees. Where θ_Z is the same in all, it is
+    /// drawn from 0° to 90°.
+    #[arg(long, value_name = "FILE.csv")]
+    poses: Option<PathBuf>,
+    /// The seed of all that is random.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u32,
+    /// Do the i-th of n equal parts of the work and write it to `--out`; `phalanx merge` joins the
+    /// parts to the model that a single run gives.
+    #[arg(long, value_name = "i/n", value_parser = Shard::from_str)]
+    shard: Option<Shard>,
+    /// Where the model goes, or a shard's part.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+#[derive(Args)]
+pub(crate) struct MergeArguments {
+    /// The parts that `phalanx train --shard` wrote, in any order.
+    #[arg(required = true, value_name = "PART")]
+    parts: Vec<PathBuf>,
+    /// Where the model goes.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// The presets by name.
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum PresetName {
+    /// 4,000 scenes: some seconds.
+    Fast,
+    /// 120,000 scenes: some minutes.
+    #[default]
+    Default,
+    /// 240,000 scenes.
+    Best,
+}
+
+/// Framings by name.
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum FramingName {
+    /// The whole picture, whose middle the hand is in.
+    #[default]
+    Picture,
+    /// A window on a hand that may be anywhere in the rig's volume.
+    Window,
+}
+
+impl From<PresetName> for Preset {
+    fn from(name: PresetName) -> Self {
+        match name {
+            PresetName::Fast => Self::Fast,
+            PresetName::Default => Self::Default,
+            PresetName::Best => Self::Best,
+        }
+    }
+}
+
+impl From<FramingName> for Framing {
+    fn from(name: FramingName) -> Self {
+        match name {
+            FramingName::Picture => Self::Picture,
+            FramingName::Window => Self::Window,
+        }
+    }
+}
+
+fn samples(text: &str) -> Result<usize, String> {
+    let samples = text.parse().map_err(|error| format!("{error}"))?;
+    if SAMPLES.contains(&samples) {
+        return Ok(samples);
+    }
+    Err(format!("{samples} is not between {} and {}", SAMPLES.start(), SAMPLES.end()))
+}
+
+pub(crate) fn train(arguments: &Arguments) -> Result<()> {
+    let rig = rig(arguments)?;
+    let hand = arguments.hand.as_deref().map(input::hand).transpose()?;
+    let hand = hand.unwrap_or_else(HandShape::adult);
+    let preset = Preset::from(arguments.preset);
+    let samples = arguments.samples.unwrap_or(preset.scenes());
+    let mut trainer = Trainer::preset(preset)
+        .framing(arguments.framing.into())
+        .samples(samples)
+        .seed(arguments.seed);
+    if let Some(path) = &arguments.poses {
+        trainer = trainer.recorded(poses(path)?);
+    }
+    let shard = arguments.shard.unwrap_or(Shard::WHOLE);
+    let forecast = Forecast::new(trainer.cost(rig.cameras.len(), shard), rig.cameras.len());
+    let part = trainer.fit_shard(&rig, &hand, shard, &forecast)?;
+    if arguments.shard.is_none() {
+        return save(&part.finish(&forecast)?, &arguments.out);
+    }
+    drop(forecast);
+    let lost = part.losses();
+    if lost.count() > 0 {
+        eprintln!("phalanx: {} scenes could not be used: {lost}", lost.count());
+    }
+    let bytes = part.to_bytes()?;
+    output::write_whole(&arguments.out, &bytes)?;
+    output::print(&format!("{}: {} KiB\n", arguments.out.display(), bytes.len().div_ceil(1024)))
+}
+
+pub(crate) fn merge(arguments: &MergeArguments) -> Result<()> {
+    let mut merged: Option<Part> = None;
+    for path in &arguments.parts {
+        let name = || path.display().to_string();
+        let part = Part::from_bytes(&std::fs::read(path).with_context(name)?).with_context(name)?;
+        match &mut merged {
+            None => merged = Some(part),
+            Some(merged) => merged.merge(part).with_context(name)?,
+        }
+    }
+    let bar = Bar::new();
+    let estimator = merged.context("there is no part")?.finish(&bar)?;
+    drop(bar);
+    save(&estimator, &arguments.out)
+}
+
+/// The rig that is asked for.
+fn rig(arguments: &Arguments) -> Result<Rig> {
+    let rig = match &arguments.rig {
+        None => Rig::from_toml(DESK)?,
+        Some(path) => {
+            let name = || path.display().to_string();
+            Rig::from_toml(&std::fs::read_to_string(path).with_context(name)?).with_context(name)?
+        }
+    };
+    if arguments.cameras.is_empty() {
+        return Ok(rig);
+    }
+    Ok(rig.select(&arguments.cameras.iter().map(|name| name.trim()).collect::<Vec<_>>())?)
+}
+
+/// The poses of a file; what is odd about it goes to standard error.
+fn poses(path: &Path) -> Result<Vec<Pose>> {
+    let name = || path.display().to_string();
+    let table =
+        PoseTable::read(std::fs::File::open(path).with_context(name)?).with_context(name)?;
+    for warning in &table.warnings {
+        eprintln!("phalanx: {}: {warning}", path.display());
+    }
+    Ok(table.poses)
+}
+
+/// Writes a model and says what it is.
+fn save(estimator: &Estimator, out: &Path) -> Result<()> {
+    let bytes = estimator.to_bytes()?;
+    output::write_whole(out, &bytes)?;
+    let cameras = &estimator.rig().cameras;
+    let names: Vec<&str> = cameras.iter().map(|camera| camera.name.as_str()).collect();
+    output::print(&format!(
+        "{}: a model for the cameras {}; {} KiB\n",
+        out.display(),
+        names.join(", "),
+        bytes.len().div_ceil(1024),
+    ))
+}
+
+/// Says what a training takes: scenes and memory beforehand, and the time for drawing once some scenes
+/// are drawn. Shows the progress.
+struct Forecast {
+    bar: Bar,
+    cost: Cost,
+    /// When drawing began, and how many scenes are drawn; nothing once the time has been said.
+    drawn: Mutex<Option<(Instant, usize)>>,
+}
+
+impl Forecast {
+    /// Scenes by which the time is known.
+    const FIRST_BLOCK: usize = 256;
+
+    fn new(cost: Cost, views: usize) -> Self {
+        let Cost { scenes, bytes } = cost;
+        let mebibytes = bytes.div_ceil(1 << 20);
+        eprintln!("phalanx: {scenes} scenes to draw for {views} cameras; about {mebibytes} MiB");
+        Self { bar: Bar::new(), cost, drawn: Mutex::new(Some((Instant::now(), 0))) }
+    }
+
+    /// How long all scenes take, once the first block is drawn.
+    fn time(&self) -> Option<Duration> {
+        let mut drawn = self.drawn.lock().ok()?;
+        let (since, count) = drawn.as_mut()?;
+        *count += 1;
+        if *count < Self::FIRST_BLOCK {
+            return None;
+        }
+        let each = since.elapsed().div_f64(*count as f64);
+        *drawn = None;
+        Some(each.mul_f64(self.cost.scenes as f64))
+    }
+}
+
+impl Progress for Forecast {
+    fn begin(&self, stage: &str, items: usize) {
+        self.bar.begin(stage, items);
+    }
+
+    fn step(&self) {
+        self.bar.step();
+        if let Some(time) = self.time() {
+            let seconds = time.as_secs_f64();
+            let time = match seconds {
+                ..90.0 => format!("{seconds:.0} s"),
+                _ => format!("{:.0} min", seconds / 60.0),
+            };
+            self.bar.say(&format!("drawing takes about {time}, and then fitting its time"));
+        }
+    }
+
+    fn lost(&self, losses: &Losses, scenes: usize) {
+        self.bar.lost(losses, scenes);
+    }
+}

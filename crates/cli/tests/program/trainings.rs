@@ -1,0 +1,102 @@
+//! Models that the program trains by itself.
+
+use image::GrayImage;
+use phalanx::{draw_silhouette, working_camera};
+use phalanx_camera::Rig;
+use phalanx_hand::{Dof, HandShape, Pose};
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::desk::{Outcome, closing, run};
+
+/// As quick as it goes: one camera, few scenes.
+const QUICK: [&str; 7] = ["train", "--preset", "fast", "--samples", "150", "--cameras", "top"];
+
+fn train(folder: &TempDir, arguments: &[&str]) -> Outcome {
+    run(folder.path(), QUICK.iter().chain(arguments))
+}
+
+/// The hand before the built-in rig's camera from above.
+fn seen_from_the_top(pose: &Pose) -> GrayImage {
+    let rig = Rig::from_toml(include_str!("../../fixtures/desk.toml")).unwrap();
+    let camera = rig.select(&["top"]).unwrap().cameras.remove(0);
+    let camera = working_camera(&camera).unwrap();
+    draw_silhouette(&camera, &HandShape::adult(), pose, &rig.volume.rest_frame()).unwrap()
+}
+
+#[test]
+fn in_an_empty_folder_a_model_is_trained_and_estimates() {
+    let folder = TempDir::new().unwrap();
+    let outcome = train(&folder, &["--out", "hand.phalanx"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    assert!(
+        outcome.out.starts_with("hand.phalanx: a model for the cameras top; "),
+        "{}",
+        outcome.out
+    );
+    assert!(outcome.err.contains("scenes to draw for 1 cameras; about "), "{}", outcome.err);
+
+    for (name, closed) in [("open.png", 0.0), ("closed.png", 1.0)] {
+        seen_from_the_top(&closing(closed)).save(folder.path().join(name)).unwrap();
+    }
+    let bent = |name: &str, further: &[&str]| {
+        let arguments = ["estimate", "--model", "hand.phalanx", "--mask", "--json", name];
+        let outcome = run(folder.path(), arguments.iter().chain(further));
+        assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+        let report: Value = serde_json::from_str(&outcome.out).unwrap();
+        let fingers = [Dof::IndexPip, Dof::MiddlePip, Dof::RingPip];
+        let bent = fingers.map(|dof| report["pose"][dof.name()]["value"].as_f64().unwrap());
+        bent.iter().sum::<f64>() / 3.0
+    };
+    assert!(bent("closed.png", &[]) > bent("open.png", &[]) + 15.0);
+    // It has learnt how its estimates err, so that refinement tries several poses.
+    assert!(bent("closed.png", &["--refine"]) > bent("open.png", &["--refine"]) + 30.0);
+}
+
+#[test]
+fn parts_are_merged_to_the_model_of_a_single_run() {
+    let folder = TempDir::new().unwrap();
+    for arguments in [&["--out", "whole"][..], &["--shard", "1/1", "--out", "part"]] {
+        let outcome = train(&folder, arguments);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    }
+    let outcome = run(folder.path(), ["merge", "part", "--out", "merged"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    assert!(read("whole") == read("merged"));
+    let outcome = run(folder.path(), ["merge", "part", "part", "--out", "twice"]);
+    assert_eq!(outcome.code, Some(2));
+    assert!(outcome.err.contains("part: two parts both hold samples 0 to 149"), "{}", outcome.err);
+}
+
+#[test]
+fn what_cannot_be_trained_is_named_and_leaves_nothing() {
+    let folder = TempDir::new().unwrap();
+    let desk = include_str!("../../fixtures/desk.toml");
+    // The hand works where no camera looks.
+    let away = desk.replacen("center_mm = [0, 0, ", "center_mm = [0, 3000, ", 1);
+    assert_ne!(away, desk);
+    std::fs::write(folder.path().join("away.toml"), away).unwrap();
+    for (arguments, said) in [
+        (&["--samples", "3"][..], "3 is not between 100 and 10000000"),
+        (&["--shard", "3/2"], "there is no shard 3 of 2"),
+        (&["--cameras", "left"], "left"),
+        (&["--rig", "missing.toml"], "missing.toml"),
+        (
+            &["--rig", "away.toml"],
+            "of 150 training scenes cannot be used, more than 5 %: camera 'top'",
+        ),
+        (&["--poses", "missing.csv"], "missing.csv"),
+    ] {
+        let arguments = ["train", "--preset", "fast", "--out", "out"].iter().chain(arguments);
+        let samples: &[&str] = if arguments.clone().any(|argument| *argument == "--samples") {
+            &[]
+        } else {
+            &["--samples", "150"]
+        };
+        let outcome = run(folder.path(), arguments.chain(samples));
+        assert_eq!(outcome.code, Some(2), "{}", outcome.err);
+        assert!(outcome.err.contains(said), "{said}: {}", outcome.err);
+        assert!(!folder.path().join("out").exists());
+    }
+}

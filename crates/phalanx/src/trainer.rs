@@ -1,0 +1,163 @@
+//! Training by a preset, from scenes to an estimator that knows how it errs.
+
+use phalanx_camera::Rig;
+use phalanx_hand::{HandShape, Pose};
+
+use crate::part::ErrorScenes;
+use crate::{
+    Damage, Estimator, Framing, Part, PoseSource, Preset, Progress, Result, SceneSampler, Shard,
+    Training,
+};
+
+/// Trains an estimator as a [`Preset`] says: draws random scenes, learns from them, and fits a model of
+/// the estimator's errors to further scenes.
+///
+/// ```no_run
+/// use phalanx::{Preset, Silent, Trainer};
+/// use phalanx_camera::Rig;
+/// use phalanx_hand::HandShape;
+///
+/// let rig = Rig::from_toml(&std::fs::read_to_string("rig.toml")?)?;
+/// let estimator = Trainer::preset(Preset::Default).fit(&rig, &HandShape::adult(), &Silent)?;
+/// std::fs::write("hand.phalanx", estimator.to_bytes()?)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Trainer {
+    training: Training,
+    poses: Option<PoseSource>,
+    damage: Damage,
+    samples: usize,
+    error_samples: usize,
+    seed: u32,
+}
+
+/// What a training takes, roughly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cost {
+    /// Scenes that are drawn through every camera, those of the error model included.
+    pub scenes: usize,
+    /// Bytes that are held at most.
+    pub bytes: usize,
+}
+
+impl Trainer {
+    /// Scenes that the error model is fitted to.
+    pub const ERROR_SAMPLES: usize = 4000;
+
+    /// As a preset says: whole pictures, random poses with every [`Damage`], an error model.
+    pub fn preset(preset: Preset) -> Self {
+        Self {
+            training: preset.training(),
+            poses: None,
+            damage: Damage::default(),
+            samples: preset.scenes(),
+            error_samples: Self::ERROR_SAMPLES,
+            seed: 0,
+        }
+    }
+
+    /// What of the pictures is looked at. [`Framing::Window`] learns from hands anywhere in the rig's
+    /// volume.
+    #[must_use]
+    pub fn framing(mut self, framing: Framing) -> Self {
+        self.training.framing = framing;
+        self
+    }
+
+    /// How many scenes are learnt from.
+    #[must_use]
+    pub fn samples(mut self, samples: usize) -> Self {
+        self.samples = samples;
+        self
+    }
+
+    /// How many further scenes the error model is fitted to; 0 for none, and then the estimator has no
+    /// hypotheses.
+    #[must_use]
+    pub fn error_samples(mut self, samples: usize) -> Self {
+        self.error_samples = samples;
+        self
+    }
+
+    /// Where poses come from; by default what goes with the framing.
+    #[must_use]
+    pub fn poses(mut self, poses: PoseSource) -> Self {
+        self.poses = Some(poses);
+        self
+    }
+
+    /// Learns from recorded poses in place of the prior's.
+    #[must_use]
+    pub fn recorded(self, poses: Vec<Pose>) -> Self {
+        self.poses(PoseSource::Recorded(poses))
+    }
+
+    /// How scenes differ from what the rig is made for.
+    #[must_use]
+    pub fn damage(mut self, damage: Damage) -> Self {
+        self.damage = damage;
+        self
+    }
+
+    /// The seed of all that is drawn; 0 by default.
+    #[must_use]
+    pub fn seed(mut self, seed: u32) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// The recipe that the scenes are learnt by.
+    pub fn training(&self) -> &Training {
+        &self.training
+    }
+
+    /// The scenes that are learnt from.
+    pub fn sampler(&self) -> SceneSampler {
+        let framing = self.training.framing;
+        let poses = self.poses.clone().unwrap_or_else(|| PoseSource::for_framing(framing));
+        let sampler = SceneSampler::new(poses).with_seed(self.seed);
+        SceneSampler { damage: self.damage.clone(), ..sampler }
+    }
+
+    /// What training through so many views takes in one run.
+    pub fn cost(&self, views: usize, shard: Shard) -> Cost {
+        let own = shard.scenes(self.samples);
+        let pilot = self.samples.min(self.training.regressor.pilot());
+        let codebook = self.samples.min(Training::CODEBOOK_SCENES);
+        let errors = if shard == Shard::WHOLE { self.error_samples } else { 0 };
+        Cost {
+            scenes: codebook.saturating_add(pilot).saturating_add(own).saturating_add(errors),
+            bytes: self.training.bytes(views, codebook, pilot, own),
+        }
+    }
+
+    /// Trains for a rig and a hand. The same input gives the same estimator at any number of threads.
+    ///
+    /// # Errors
+    /// An unusable rig or hand, fewer than two scenes, or more than [`Losses::MOST`](crate::Losses::MOST)
+    /// of the scenes that some camera does not show.
+    pub fn fit(&self, rig: &Rig, hand: &HandShape, progress: &dyn Progress) -> Result<Estimator> {
+        self.fit_shard(rig, hand, Shard::WHOLE, progress)?.finish(progress)
+    }
+
+    /// Does one shard of the training. All shards, [merged](Part::merge) in any order and
+    /// [finished](Part::finish), give the bytes of [`fit`](Self::fit).
+    ///
+    /// # Errors
+    /// As of [`fit`](Self::fit).
+    pub fn fit_shard(
+        &self,
+        rig: &Rig,
+        hand: &HandShape,
+        shard: Shard,
+        progress: &dyn Progress,
+    ) -> Result<Part> {
+        let sampler = self.sampler();
+        sampler.check()?;
+        let scenes = sampler.scenes(rig, hand, self.samples);
+        let part = self.training.shard(rig, hand, &scenes, shard, progress)?;
+        let errors = ErrorScenes { sampler: sampler.fresh(), count: self.error_samples };
+        Ok(part.with_error_scenes((self.error_samples > 0).then_some(errors)))
+    }
+}
