@@ -112,7 +112,8 @@ fn estimates(
             let drawn = Silhouette::from_mask(&drawn)?;
             let mut panel = image.clone();
             let window = working_window(panel.dimensions())?;
-            let (observed, rule) = (&workspace.silhouettes()[column], estimator.orientation());
+            let observed = &estimate.observation.views[column].silhouette;
+            let rule = estimator.orientation();
             draw_overlay(&mut panel, window, observed, rule, Some(&drawn));
             let panel = imageops::thumbnail(&panel, PANEL.0, PANEL.1);
             let (x, y) = (column as u32 * PANEL.0, row as u32 * PANEL.1);

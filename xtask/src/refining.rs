@@ -82,31 +82,28 @@ impl Refining {
         let look = |(describer, workspace): &mut (SceneDescriber, Workspace), &number: &usize| {
             let scene = set.scene(number);
             let refiner = &own[number % set.hands() % own.len()];
-            let (estimate, evidence, [start, estimated]) =
-                match estimator.descriptor().sight().framing {
-                    Framing::Picture => {
-                        let Ok(seen) = describer.silhouettes(&scene) else { return Ok(None) };
-                        let seen: Vec<Silhouette> = seen.cloned().collect();
-                        let start = ThreadTime::now();
-                        let estimate = estimator.estimate_silhouettes(&seen, workspace)?;
-                        let estimated = ThreadTime::now();
-                        (estimate, refiner.evidence(&seen)?, [start, estimated])
-                    }
-                    Framing::Window => {
-                        let masks = describer.masks(&scene)?;
-                        let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
-                        let start = ThreadTime::now();
-                        let estimate = estimator.estimate(&pictures, workspace);
-                        let Ok(estimate) = estimate else { return Ok(None) };
-                        let estimated = ThreadTime::now();
-                        (estimate, refiner.evidence_of(workspace)?, [start, estimated])
-                    }
-                };
+            let (estimate, [start, estimated]) = match estimator.framing() {
+                Framing::Picture => {
+                    let Ok(seen) = describer.silhouettes(&scene) else { return Ok(None) };
+                    let seen: Vec<Silhouette> = seen.cloned().collect();
+                    let start = ThreadTime::now();
+                    let estimate = estimator.estimate_silhouettes(&seen, workspace)?;
+                    (estimate, [start, ThreadTime::now()])
+                }
+                Framing::Window => {
+                    let masks = describer.masks(&scene)?;
+                    let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
+                    let start = ThreadTime::now();
+                    let estimate = estimator.estimate(&pictures, workspace);
+                    let Ok(estimate) = estimate else { return Ok(None) };
+                    (estimate, [start, ThreadTime::now()])
+                }
+            };
             let believed = match self.believed {
                 Believed::Estimate => estimate.clone(),
                 Believed::Truth => Estimate { pose: scene.pose, ..estimate.clone() },
             };
-            let refined = refined::refine(estimator, refiner, &believed, &evidence, self.starts)?;
+            let refined = refined::refine(estimator, refiner, believed, self.starts)?;
             let refine_ms = 1e3 * estimated.elapsed().as_secs_f64();
             progress.step();
             Ok(Some(Look {

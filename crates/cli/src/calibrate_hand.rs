@@ -105,5 +105,5 @@ fn frame(
             photographs.iter().map(|image| Picture::Photograph(image, &skin)).collect();
         estimator.estimate(&photographs, &mut workspace)?
     };
-    Ok(refiner.frame(refiner.evidence_of(&workspace)?, &estimate)?)
+    Ok(refiner.frame(&estimate)?)
 }

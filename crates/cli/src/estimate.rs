@@ -6,8 +6,8 @@ use anyhow::{Result, bail};
 use clap::Args;
 use image::{DynamicImage, RgbImage, imageops};
 use phalanx::{
-    Estimate, Estimator, Picture, Refiner, Segmenter, Workspace, draw_overlay, draw_silhouette,
-    draw_window_overlay, working_window,
+    Estimate, Estimator, ObservedView, Picture, RefinedEstimate, Refiner, Segmenter, Workspace,
+    draw_overlay, draw_silhouette, draw_window_overlay, working_window,
 };
 use phalanx_hand::HandShape;
 use phalanx_refine::{Doubt, Refinement};
@@ -62,12 +62,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let hand = arguments.hand.as_deref().map(input::hand).transpose()?;
     let hand = hand.unwrap_or_else(|| estimator.hand().clone());
     let estimate = if arguments.refine {
-        refine(&estimator, &hand, estimate, &workspace, &mut doubts)?
+        refine(&estimator, &hand, estimate, &mut doubts)?
     } else {
         estimate
     };
     if let Some(path) = &arguments.overlay {
-        let overlay = overlay(&estimator, &hand, &estimate, &pictures, &workspace, &mut doubts)?;
+        let overlay = overlay(&estimator, &hand, &estimate, &pictures, &mut doubts)?;
         output::write_png(path, &overlay)?;
     }
     for doubt in doubts {
@@ -85,21 +85,15 @@ fn refine(
     estimator: &Estimator,
     hand: &HandShape,
     estimate: Estimate,
-    workspace: &Workspace,
     doubts: &mut Vec<String>,
 ) -> Result<Estimate> {
     let refinement = Refinement { doubt: Some(Doubt::default()), ..Refinement::default() };
     let refiner = Refiner::for_estimator(estimator, refinement)?.with_hand(hand)?;
-    let evidence = refiner.evidence_of(workspace)?;
-    let hypotheses = match estimator.errors() {
-        Some(_) => estimator.hypotheses(&estimate, refiner.starts())?,
-        None => Vec::new(),
-    };
-    let refined = refiner.refine_best(&evidence, &estimate, &hypotheses)?.swap_remove(0);
-    if !refined.converged {
+    let RefinedEstimate { refined, fit, .. } = refiner.refine_estimate(estimator, estimate)?;
+    if !fit.converged {
         doubts.push("the refinement stopped before it settled".to_owned());
     }
-    for (camera, overlap) in estimator.rig().cameras.iter().zip(&refined.overlaps) {
+    for (camera, overlap) in estimator.rig().cameras.iter().zip(&fit.overlaps) {
         if *overlap < GOOD_OVERLAP {
             let camera = &camera.name;
             doubts.push(format!(
@@ -107,7 +101,7 @@ fn refine(
             ));
         }
     }
-    Ok(refiner.refined_estimate(estimate, &refined)?)
+    Ok(refined)
 }
 
 /// Overlap (intersection over union) below which a refined hand is doubtful.
@@ -155,14 +149,13 @@ fn overlay(
     hand: &HandShape,
     estimate: &Estimate,
     pictures: &[DynamicImage],
-    workspace: &Workspace,
     doubts: &mut Vec<String>,
 ) -> Result<RgbImage> {
     let rest = estimator.rig().volume.rest_frame();
     let mut panels = Vec::new();
     for (view, camera) in estimator.rig().cameras.iter().enumerate() {
-        let window = workspace.windows().get(view);
-        let drawn_by = window.map_or(camera, |window| &window.camera);
+        let ObservedView { silhouette: observed, window, .. } = &estimate.observation.views[view];
+        let drawn_by = window.as_ref().map_or(camera, |window| &window.camera);
         let drawn = draw_silhouette(drawn_by, hand, &estimate.pose, &rest)?;
         let estimated = Silhouette::from_mask(&drawn);
         if let Err(reason) = &estimated {
@@ -170,7 +163,7 @@ fn overlay(
             doubts.push(format!("camera '{camera}': the estimated hand is not drawn: {reason}"));
         }
         let mut canvas = pictures[view].to_rgb8();
-        let (observed, estimated) = (&workspace.silhouettes()[view], estimated.as_ref().ok());
+        let estimated = estimated.as_ref().ok();
         if let Some(window) = window {
             draw_window_overlay(&mut canvas, window, observed, estimated);
         } else {

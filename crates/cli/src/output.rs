@@ -33,18 +33,17 @@ impl Serialize for Figures<'_> {
 #[derive(Serialize)]
 struct Figure {
     value: f64,
-    /// None for a number that no training pose varied: it is not estimated, and a deviation of 0
-    /// would read as certainty.
+    /// None for a number that is not estimated.
     std: Option<f64>,
     unit: &'static str,
 }
 
 impl Figure {
     fn of(estimate: &Estimate, dof: Dof) -> Self {
-        let (unit, std) = (dof.unit(), estimate.std[dof.index()]);
+        let unit = dof.unit();
         Self {
             value: unit.to_file(estimate.pose[dof]),
-            std: (std > 0.0).then(|| unit.to_file(std)),
+            std: estimate.std[dof.index()].map(|std| unit.to_file(std)),
             unit: match unit {
                 Unit::Angle => "deg",
                 Unit::Length => "mm",
@@ -112,7 +111,7 @@ fn views<'a>(
     estimate: &'a Estimate,
 ) -> impl Iterator<Item = (&'a str, &'a Forearm)> {
     let names = estimator.rig().cameras.iter().map(|camera| camera.name.as_str());
-    names.zip(&estimate.forearms)
+    names.zip(estimate.observation.forearms())
 }
 
 /// Writes a result to standard output.

@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let estimate = estimator.estimate(&pictures, &mut workspace)?;
         let compare = |dof: Dof| {
             let [found, truth] = [estimate.pose[dof], truth[dof]].map(f64::to_degrees);
-            let std = estimate.std[dof.index()].to_degrees();
+            let std = estimate.std[dof.index()].unwrap_or_default().to_degrees();
             format!("{found:.1} ± {std:.1} ({truth:.1})")
         };
         println!("{closed:6}  {theta_z:5}°  {}  {}", compare(Dof::IndexPip), compare(Dof::ThetaZ));

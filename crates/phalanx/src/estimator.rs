@@ -5,12 +5,12 @@ use image::GrayImage;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
 use phalanx_rvm::ConditionalDensity;
-use phalanx_segmentation::{Forearm, Silhouette};
+use phalanx_segmentation::Silhouette;
 
 use crate::global_pose::place;
 use crate::{
-    Descriptor, Error, Framing, OrientationRule, Picture, Regression, Result, Window, WindowFinder,
-    descriptor,
+    Descriptor, Error, Framing, Observation, ObservedView, OrientationRule, Picture, Regression,
+    Result, Window, WindowFinder, descriptor,
 };
 
 /// A pose estimator for one rig and one hand; see [`Training`](crate::Training) for how to get
@@ -29,43 +29,22 @@ pub struct Estimator {
 pub struct Estimate {
     /// The pose, radians and millimetres.
     pub pose: Pose,
-    /// Predictive standard deviation of each number of the pose, in its unit.
-    pub std: [f64; Dof::COUNT],
+    /// Predictive standard deviation of each number of the pose, in its unit; `None` for a number that
+    /// is not estimated, because it did not vary in what was learnt from.
+    pub std: [Option<f64>; Dof::COUNT],
     /// The 21 joints in the world, mm.
     pub joints: [DVec3; JOINTS],
-    /// Where each view's forearm was found, and by what evidence, at the working size.
-    pub forearms: Vec<Forearm>,
+    /// What was seen.
+    pub observation: Observation,
 }
 
-/// Memory that one estimate after another uses again.
+/// Memory that one estimate after another uses again. It holds nothing to be read.
 #[derive(Debug, Default)]
 pub struct Workspace {
-    silhouettes: Vec<Silhouette>,
-    windows: Vec<Window>,
-    memory: Memory,
-}
-
-/// What a [`Workspace`] keeps besides the silhouettes.
-#[derive(Debug, Default)]
-struct Memory {
     windows: WindowFinder,
     description: descriptor::Memory,
     x: Vec<f64>,
     regression: phalanx_rvm::Scratch,
-}
-
-impl Workspace {
-    /// The silhouettes of the last estimate from pictures, in the order of the cameras; of no
-    /// meaning if it failed.
-    pub fn silhouettes(&self) -> &[Silhouette] {
-        &self.silhouettes
-    }
-
-    /// The windows that the last silhouettes are seen in, where the estimator looks through windows;
-    /// of no meaning if it failed.
-    pub fn windows(&self) -> &[Window] {
-        &self.windows
-    }
 }
 
 impl Estimator {
@@ -126,6 +105,11 @@ impl Estimator {
         self.descriptor.orientation()
     }
 
+    /// What of the pictures it looks at.
+    pub fn framing(&self) -> Framing {
+        self.descriptor.sight().framing
+    }
+
     /// Its regressor.
     pub fn regression(&self) -> &Regression {
         &self.regression
@@ -150,49 +134,48 @@ impl Estimator {
         for (view, picture) in pictures.iter().enumerate() {
             self.check_shape(view, picture.size())?;
         }
-        let Workspace { silhouettes, windows, memory } = workspace;
-        silhouettes.resize_with(pictures.len(), Silhouette::default);
-        windows.clear();
-        match self.descriptor.sight().framing {
-            Framing::Picture => self.see_whole(pictures, silhouettes, memory)?,
-            Framing::Window => {
-                let masks = self.masks(pictures)?;
-                *windows = memory.windows.find(&self.rig.cameras, &masks, None)?;
-                memory.windows.silhouettes(windows, silhouettes)?;
-            }
-        }
-        let estimate = self.look_at(silhouettes, memory)?;
-        match self.descriptor.sight().framing {
-            Framing::Picture => Ok(estimate),
-            Framing::Window => self.place(estimate, windows),
-        }
-    }
-
-    /// An estimate with the hand where the windows show it that the silhouettes were seen in:
-    /// position, θ_X and θ_Y, which what is seen through a window does not tell. Estimates from
-    /// pictures are placed already.
-    ///
-    /// # Errors
-    /// As of [`initial_global`](crate::initial_global).
-    pub fn place(&self, estimate: Estimate, windows: &[Window]) -> Result<Estimate> {
-        place(&self.rig, &self.hand, estimate, windows)
+        let observation = match self.framing() {
+            Framing::Picture => self.see_whole(pictures, workspace)?,
+            Framing::Window => self.see_through_windows(pictures, workspace)?,
+        };
+        self.estimate_observation(observation, workspace)
     }
 
     /// The silhouettes of whole pictures.
     fn see_whole(
         &self,
         pictures: &[Picture<'_>],
-        silhouettes: &mut [Silhouette],
-        memory: &mut Memory,
-    ) -> Result<()> {
-        for ((view, &picture), silhouette) in pictures.iter().enumerate().zip(silhouettes) {
-            memory
-                .description
-                .describer
-                .silhouette(picture, silhouette)
+        workspace: &mut Workspace,
+    ) -> Result<Observation> {
+        let describer = &mut workspace.description.describer;
+        let see = |(view, picture): (usize, &Picture<'_>)| {
+            let mut silhouette = Silhouette::default();
+            describer
+                .silhouette(*picture, &mut silhouette)
                 .map_err(|reason| Error::Silhouette { camera: self.camera(view), reason })?;
-        }
-        Ok(())
+            Ok(ObservedView { silhouette, window: None, picture: picture.size() })
+        };
+        let views = pictures.iter().enumerate().map(see).collect::<Result<_>>()?;
+        Ok(Observation { views })
+    }
+
+    /// The silhouettes of the hand in windows of pictures.
+    fn see_through_windows(
+        &self,
+        pictures: &[Picture<'_>],
+        workspace: &mut Workspace,
+    ) -> Result<Observation> {
+        let masks = self.masks(pictures)?;
+        let windows = workspace.windows.find(&self.rig.cameras, &masks, None)?;
+        let mut silhouettes = vec![Silhouette::default(); windows.len()];
+        workspace.windows.silhouettes(&windows, &mut silhouettes)?;
+        let views = silhouettes.into_iter().zip(windows).zip(pictures);
+        let view = |((silhouette, window), picture): ((_, _), &Picture<'_>)| ObservedView {
+            silhouette,
+            window: Some(window),
+            picture: picture.size(),
+        };
+        Ok(Observation { views: views.map(view).collect() })
     }
 
     /// The raw masks of pictures, as large as they are.
@@ -204,7 +187,8 @@ impl Estimator {
     }
 
     /// Estimates the pose from one silhouette per camera, of any size, in the order of the rig's
-    /// cameras.
+    /// cameras. Where they are seen through windows is not known, nor then where the hand is: see
+    /// [`estimate_observation`](Self::estimate_observation).
     ///
     /// # Errors
     /// Another number of silhouettes, or one that cannot be described.
@@ -213,18 +197,30 @@ impl Estimator {
         silhouettes: &[Silhouette],
         workspace: &mut Workspace,
     ) -> Result<Estimate> {
-        self.check_count(silhouettes.len())?;
-        self.look_at(silhouettes, &mut workspace.memory)
+        self.estimate_observation(Observation::of_silhouettes(silhouettes), workspace)
     }
 
-    /// The estimate from one silhouette per camera.
-    fn look_at(&self, silhouettes: &[Silhouette], memory: &mut Memory) -> Result<Estimate> {
-        let Memory { description, x, .. } = memory;
-        self.descriptor.describe(&self.rig, silhouettes.iter(), description, x)?;
-        let (pose, std) = self.regress(memory)?;
+    /// Estimates the pose from what was seen already. Where the views have windows, these tell
+    /// position, θ_X and θ_Y, which what is seen through a window does not tell.
+    ///
+    /// # Errors
+    /// Another number of views, a silhouette that cannot be described, or windows as of
+    /// [`initial_global`](crate::initial_global).
+    pub fn estimate_observation(
+        &self,
+        observation: Observation,
+        workspace: &mut Workspace,
+    ) -> Result<Estimate> {
+        self.check_count(observation.views.len())?;
+        let Workspace { description, x, .. } = workspace;
+        self.descriptor.describe(&self.rig, observation.silhouettes(), description, x)?;
+        let (pose, std) = self.regress(workspace)?;
         let joints = self.hand.pose(&pose, &self.rig.volume.rest_frame()).joints;
-        let forearms = silhouettes.iter().map(|silhouette| silhouette.forearm).collect();
-        Ok(Estimate { pose, std, joints, forearms })
+        let estimate = Estimate { pose, std, joints, observation };
+        match estimate.observation.framing() {
+            Framing::Picture => Ok(estimate),
+            Framing::Window => place(&self.rig, &self.hand, estimate),
+        }
     }
 
     fn camera(&self, view: usize) -> String {
@@ -250,16 +246,23 @@ impl Estimator {
         Err(Error::PictureShape { camera: self.camera(view), found, expected })
     }
 
-    fn regress(&self, memory: &mut Memory) -> Result<(Pose, [f64; Dof::COUNT])> {
-        let Memory { x, regression, .. } = memory;
+    fn regress(&self, workspace: &mut Workspace) -> Result<(Pose, [Option<f64>; Dof::COUNT])> {
+        let Workspace { x, regression, .. } = workspace;
         let (mut pose, mut std) = (Pose::REST, [0.0; Dof::COUNT]);
         self.regression.predict_into(x, regression, &mut pose.0, &mut std)?;
         for dof in Dof::ALL {
-            let numbers = [pose[dof], std[dof.index()]];
-            if let Some(&value) = numbers.iter().find(|number| !number.is_finite()) {
+            let (value, std) = (pose[dof], std[dof.index()]);
+            if !value.is_finite() || std.is_nan() {
+                let value = if value.is_finite() { std } else { value };
                 return Err(Error::Overflow { dof: dof.name(), value });
             }
         }
-        Ok((pose, std))
+        Ok((pose, std.map(known)))
     }
+}
+
+/// A regressor's standard deviation, if it knows one: it is infinite, or 0 in the models of old, where
+/// the training poses did not vary.
+pub(crate) fn known(std: f64) -> Option<f64> {
+    (std > 0.0 && std.is_finite()).then_some(std)
 }

@@ -10,7 +10,7 @@ use phalanx_hand::{Dof, HandShape, Pose, Primitive, Side};
 use phalanx_segmentation::LocatedHand;
 
 use crate::sighting::{Sighting, arm};
-use crate::{Error, Estimate, Result, Window};
+use crate::{Error, Estimate, ObservedView, Result};
 
 /// A pose whose global part was found from the hands' places in the views.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,20 +30,16 @@ const LEAN_STD: f64 = 0.105;
 const POSITION_STD: f64 = 8.0;
 
 /// An estimate whose hand is put where its windows show it.
-pub(crate) fn place(
-    rig: &Rig,
-    hand: &HandShape,
-    estimate: Estimate,
-    windows: &[Window],
-) -> Result<Estimate> {
-    let hands: Vec<Option<LocatedHand>> = windows.iter().map(|window| Some(window.hand)).collect();
+pub(crate) fn place(rig: &Rig, hand: &HandShape, estimate: Estimate) -> Result<Estimate> {
+    let hand_in = |view: &ObservedView| Some(view.window.as_ref()?.hand);
+    let hands: Vec<Option<LocatedHand>> = estimate.observation.views.iter().map(hand_in).collect();
     let pose = initial_global(rig, hand, &estimate.pose, &hands)?.pose;
     let mut std = estimate.std;
     for dof in [Dof::ThetaX, Dof::ThetaY] {
-        std[dof.index()] = LEAN_STD;
+        std[dof.index()] = Some(LEAN_STD);
     }
     for dof in [Dof::TX, Dof::TY, Dof::TZ] {
-        std[dof.index()] = POSITION_STD;
+        std[dof.index()] = Some(POSITION_STD);
     }
     let joints = hand.pose(&pose, &rig.volume.rest_frame()).joints;
     Ok(Estimate { pose, std, joints, ..estimate })

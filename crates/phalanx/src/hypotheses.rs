@@ -6,6 +6,7 @@ use phalanx_refine::{Evidence, Refined, Refinement};
 use phalanx_rvm::ConditionalDensity;
 use rayon::prelude::*;
 
+use crate::estimator::known;
 use crate::global_pose::PLACED;
 use crate::{
     Error, Estimate, Estimator, Framing, Losses, Progress, Refiner, Result, Scenes,
@@ -32,8 +33,8 @@ pub struct Hypothesis {
     /// The pose, radians and millimetres.
     pub pose: Pose,
     /// How far poses that this one stands for stray from it, root mean square of each number, in
-    /// its unit.
-    pub std: [f64; Dof::COUNT],
+    /// its unit; `None` for a number that is not estimated.
+    pub std: [Option<f64>; Dof::COUNT],
     /// The probability that the truth is nearer to this pose than to the other hypotheses.
     pub weight: f64,
 }
@@ -92,20 +93,25 @@ impl Estimator {
     pub fn hypotheses(&self, estimate: &Estimate, most: usize) -> Result<Vec<Hypothesis>> {
         let errors = self.errors().ok_or(Error::NoErrors)?;
         let found = errors.hypotheses(&self.unplaced(&estimate.pose).0, most)?;
-        let placed = |found| {
-            let mut hypothesis = hypothesis(found);
+        let hypothesis = |found: &phalanx_rvm::Hypothesis| {
+            let learnt = |dof: usize| estimate.std[dof].and(known(found.std[dof]));
+            let mut hypothesis = Hypothesis {
+                pose: Pose(std::array::from_fn(|dof| found.mean[dof])),
+                std: std::array::from_fn(learnt),
+                weight: found.weight,
+            };
             for &dof in self.placed() {
                 hypothesis.pose[dof] = estimate.pose[dof];
                 hypothesis.std[dof.index()] = estimate.std[dof.index()];
             }
             hypothesis
         };
-        Ok(found.iter().map(placed).collect())
+        Ok(found.iter().map(hypothesis).collect())
     }
 
     /// The numbers that windows tell where they are looked through, and regression does not.
     fn placed(&self) -> &'static [Dof] {
-        match self.descriptor().sight().framing {
+        match self.framing() {
             Framing::Picture => &[],
             Framing::Window => &PLACED,
         }
@@ -147,9 +153,11 @@ impl Refiner {
         hypotheses: &[Hypothesis],
     ) -> Result<Vec<Refined>> {
         let refine = |refiner: &Self, hypothesis: &Hypothesis| {
-            let std = std::array::from_fn(|dof| {
-                hypothesis.std[dof].max(LEAST_SPREAD * estimate.std[dof])
-            });
+            let spread = |dof: usize| {
+                let least = LEAST_SPREAD * estimate.std[dof]?;
+                Some(hypothesis.std[dof].map_or(least, |std| std.max(least)))
+            };
+            let std = std::array::from_fn(spread);
             refiner.refine(evidence, &Estimate { pose: hypothesis.pose, std, ..estimate.clone() })
         };
         let certain = self.with_refinement(Refinement { doubt: None, ..self.refinement().clone() });
@@ -192,15 +200,4 @@ fn representatives(refined: &[Refined]) -> Vec<usize> {
 fn difference(one: &Pose, other: &Pose) -> f64 {
     let angles = Dof::ALL.into_iter().filter(|dof| dof.unit() == Unit::Angle);
     angles.map(|dof| (one[dof] - other[dof]).abs()).sum()
-}
-
-fn hypothesis(found: &phalanx_rvm::Hypothesis) -> Hypothesis {
-    Hypothesis {
-        pose: Pose(std::array::from_fn(|dof| found.mean[dof])),
-        // 0 says in an estimate that a number was not learnt.
-        std: std::array::from_fn(
-            |dof| if found.std[dof].is_finite() { found.std[dof] } else { 0.0 },
-        ),
-        weight: found.weight,
-    }
 }

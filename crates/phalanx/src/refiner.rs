@@ -10,7 +10,9 @@ use phalanx_segmentation::Silhouette;
 
 use crate::global_pose::PLACED;
 use crate::{
-    Error, Estimate, Estimator, Hypothesis, ItemRandom, Result, Workspace, working_camera,
+    Error, Estimate, Estimator, Framing, Hypothesis, ItemRandom, Observation, ObservedView, Picture,
+    Result,
+    Workspace, working_camera,
 };
 
 /// Poses from the prior that tell how angles go together.
@@ -21,7 +23,7 @@ const POSTURES: u64 = 2000;
 /// well. Where the hand may be anywhere, its fingers are estimated less well, and a wrong posture is what
 /// most doubts come from.
 fn apart(refined: &Refined, estimate: &Estimate) -> f64 {
-    let is_anywhere = PLACED.iter().any(|dof| estimate.std[dof.index()] > 0.0);
+    let is_anywhere = estimate.observation.framing() == Framing::Window;
     match (refined.doubted, refined.overlaps.len()) {
         (true, _) if is_anywhere => 0.0, // always
         (true, _) => 0.35,
@@ -29,6 +31,19 @@ fn apart(refined: &Refined, estimate: &Estimate) -> f64 {
         (false, _) if is_anywhere => 0.3,
         (false, _) => 0.33,
     }
+}
+
+/// An estimate and what refinement made of it.
+#[derive(Debug, Clone)]
+pub struct RefinedEstimate {
+    /// The estimate before refinement.
+    pub estimate: Estimate,
+    /// The refined one.
+    pub refined: Estimate,
+    /// How well it fits what was seen.
+    pub fit: Refined,
+    /// Other poses that explain what was seen, the more believable first.
+    pub others: Vec<Refined>,
 }
 
 /// Fits the hand to the silhouettes that it was estimated from.
@@ -118,26 +133,32 @@ impl Refiner {
     /// # Errors
     /// A silhouette of another size, or without a border.
     pub fn evidence(&self, silhouettes: &[Silhouette]) -> Result<Vec<Evidence>> {
-        if silhouettes.len() != self.cameras.len() {
-            let cameras = self.cameras.iter().map(|camera| camera.name.clone()).collect();
-            return Err(Error::PictureCount { cameras, found: silhouettes.len() });
-        }
+        self.check_count(silhouettes.len())?;
         let pairs = self.cameras.iter().zip(silhouettes);
         let evidence = pairs.map(|(camera, seen)| Evidence::new(camera, &seen.mask));
         Ok(evidence.collect::<Result<_, _>>()?)
     }
 
-    /// What the silhouettes of the last estimate tell, in the windows that they were seen in if the
-    /// estimator looks through windows.
+    /// What an observation tells of the pose.
     ///
     /// # Errors
     /// As of [`evidence`](Self::evidence).
-    pub fn evidence_of(&self, workspace: &Workspace) -> Result<Vec<Evidence>> {
-        if workspace.windows().is_empty() {
-            return self.evidence(workspace.silhouettes());
+    pub fn evidence_of(&self, observation: &Observation) -> Result<Vec<Evidence>> {
+        self.check_count(observation.views.len())?;
+        let pairs = self.cameras.iter().zip(&observation.views);
+        let evidence = |(camera, view): (&Camera, &ObservedView)| match &view.window {
+            Some(window) => window.evidence(&view.silhouette),
+            None => Ok(Evidence::new(camera, &view.silhouette.mask)?),
+        };
+        pairs.map(evidence).collect()
+    }
+
+    fn check_count(&self, found: usize) -> Result<()> {
+        if found == self.cameras.len() {
+            return Ok(());
         }
-        let pairs = workspace.windows().iter().zip(workspace.silhouettes());
-        pairs.map(|(window, seen)| window.evidence(seen)).collect()
+        let cameras = self.cameras.iter().map(|camera| camera.name.clone()).collect();
+        Err(Error::PictureCount { cameras, found })
     }
 
     /// What is known of a pose once it was estimated: that, and how numbers go together. Numbers that
@@ -145,15 +166,18 @@ impl Refiner {
     ///
     /// # Errors
     /// An estimate that is not finite.
-    pub fn prior(&self, pose: &Pose, std: &[f64; Dof::COUNT]) -> Result<PosePrior> {
-        Ok(PosePrior::independent(*pose, std)?.and(&self.postures)?)
+    pub fn prior(&self, pose: &Pose, std: &[Option<f64>; Dof::COUNT]) -> Result<PosePrior> {
+        // A prior holds a number of no deviation where it is.
+        let std = std.map(Option::unwrap_or_default);
+        Ok(PosePrior::independent(*pose, &std)?.and(&self.postures)?)
     }
 
     /// One frame to calibrate a hand from.
     ///
     /// # Errors
     /// As of [`prior`](Self::prior).
-    pub fn frame(&self, evidence: Vec<Evidence>, estimate: &Estimate) -> Result<CalibrationFrame> {
+    pub fn frame(&self, estimate: &Estimate) -> Result<CalibrationFrame> {
+        let evidence = self.evidence_of(&estimate.observation)?;
         let prior = self.prior(&estimate.pose, &estimate.std)?;
         Ok(CalibrationFrame { evidence, start: *prior.mean(), prior })
     }
@@ -176,13 +200,47 @@ impl Refiner {
     /// As of [`prior`](Self::prior).
     pub fn refined_estimate(&self, estimate: Estimate, refined: &Refined) -> Result<Estimate> {
         let prior = self.prior(&estimate.pose, &estimate.std)?;
-        let mut std = [0.0; Dof::COUNT];
+        let mut std = [None; Dof::COUNT];
         let diagonal = refined.covariance.iter().step_by(prior.dofs().len() + 1);
         for (dof, variance) in prior.dofs().iter().zip(diagonal) {
-            std[dof.index()] = variance.max(0.0).sqrt();
+            std[dof.index()] = Some(variance.max(0.0).sqrt());
         }
         let joints = self.hand.pose(&refined.pose, &self.rest).joints;
         Ok(Estimate { pose: refined.pose, std, joints, ..estimate })
+    }
+
+    /// Estimates the pose from one picture per camera and refines it, with every hypothesis that the
+    /// estimator has about it.
+    ///
+    /// # Errors
+    /// As of [`Estimator::estimate`] and [`refine`](Self::refine).
+    pub fn estimate_and_refine(
+        &self,
+        estimator: &Estimator,
+        pictures: &[Picture<'_>],
+        workspace: &mut Workspace,
+    ) -> Result<RefinedEstimate> {
+        self.refine_estimate(estimator, estimator.estimate(pictures, workspace)?)
+    }
+
+    /// Refines an estimate with every hypothesis that the estimator has about it.
+    ///
+    /// # Errors
+    /// As of [`refine`](Self::refine).
+    pub fn refine_estimate(
+        &self,
+        estimator: &Estimator,
+        estimate: Estimate,
+    ) -> Result<RefinedEstimate> {
+        let evidence = self.evidence_of(&estimate.observation)?;
+        let hypotheses = match estimator.errors() {
+            Some(_) => estimator.hypotheses(&estimate, self.starts())?,
+            None => Vec::new(),
+        };
+        let mut fits = self.refine_best(&evidence, &estimate, &hypotheses)?.into_iter();
+        let fit = fits.next().ok_or(Error::Mismatch { part: "refined poses", found: 0, expected: 1 })?;
+        let refined = self.refined_estimate(estimate.clone(), &fit)?;
+        Ok(RefinedEstimate { estimate, refined, fit, others: fits.collect() })
     }
 
     /// Refines an estimate and, where that leaves borders apart, a hand that may be anywhere had to be

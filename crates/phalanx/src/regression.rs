@@ -72,7 +72,7 @@ impl Regression {
         self.models().iter().map(|model| model.kept_samples().len()).max().unwrap_or(0)
     }
 
-    /// Mean and standard deviation of the pose for one descriptor.
+    /// Mean and standard deviation of the pose for one descriptor; infinite where the samples tell none.
     pub(crate) fn predict_into(
         &self,
         x: &[f64],
@@ -84,9 +84,6 @@ impl Regression {
             Self::Joint(model) => model.predict_into(x, scratch, mean, std),
             Self::Projected(projected) => projected.predict_into(x, scratch, mean, std),
             Self::Network(own) => own.predict_into(x, scratch, mean, std),
-        }?;
-        // 0 says in an estimate that a number was not learnt.
-        std.iter_mut().filter(|std| std.is_infinite()).for_each(|std| *std = 0.0);
-        Ok(())
+        }
     }
 }

@@ -129,7 +129,8 @@ fn training_and_use_see_the_same() {
         let trained_on: Vec<Silhouette> = describer.silhouettes(&scene).unwrap().cloned().collect();
         let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
         let estimate = estimator.estimate(&pictures, &mut workspace).unwrap();
-        assert_eq!(workspace.silhouettes(), trained_on);
+        let seen: Vec<Silhouette> = estimate.observation.silhouettes().cloned().collect();
+        assert_eq!(seen, trained_on);
         for dof in [Dof::IndexPip, Dof::MiddleMcp, Dof::ThetaZ] {
             worst = worst.max((estimate.pose[dof] - pose[dof]).abs().to_degrees());
         }
@@ -155,7 +156,7 @@ fn hands_are_placed_and_refined_where_they_are() {
         let estimate = estimator.estimate(&pictures, &mut workspace).unwrap();
         let off = |pose: &Pose, truth: &Pose| pose.translation().distance(truth.translation());
         assert!(off(&estimate.pose, &pose) < 40.0, "{} mm", off(&estimate.pose, &pose));
-        let evidence = refiner.evidence_of(&workspace).unwrap();
+        let evidence = refiner.evidence_of(&estimate.observation).unwrap();
         let refined = refiner.refine(&evidence, &estimate).unwrap();
         assert!(off(&refined.pose, &pose) < 5.0, "{} mm", off(&refined.pose, &pose));
         assert!(refined.overlaps.iter().all(|&overlap| overlap > 0.9), "{:?}", refined.overlaps);
@@ -250,8 +251,8 @@ fn whole_pictures_have_no_windows() {
     let masks: Vec<GrayImage> =
         rig.cameras.iter().map(|camera| mask(camera, &closing(0.5, 10.0))).collect();
     let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
-    estimator.estimate(&pictures, &mut workspace).unwrap();
-    assert_eq!(workspace.windows(), []);
+    let estimate = estimator.estimate(&pictures, &mut workspace).unwrap();
+    assert_eq!(estimate.observation.framing(), Framing::Picture);
 }
 
 /// The hand as it would be located without error.

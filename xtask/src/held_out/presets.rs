@@ -163,22 +163,18 @@ impl Learnt {
         own: Option<&Refiner>,
         workspace: &mut Workspace,
     ) -> Result<Vec<Pose>> {
-        let (estimate, evidence) = match frame {
+        let estimate = match frame {
             Frame::Silhouettes(all) => {
-                let seen = self.of_views(all);
-                let estimate = self.estimator.estimate_silhouettes(&seen, workspace)?;
-                (estimate, self.refiner.evidence(&seen)?)
+                self.estimator.estimate_silhouettes(&self.of_views(all), workspace)?
             }
             Frame::Masks(all) => {
                 let pictures: Vec<Picture<'_>> =
                     self.views.iter().map(|&view| Picture::Mask(&all[view])).collect();
-                let estimate = self.estimator.estimate(&pictures, workspace)?;
-                (estimate, self.refiner.evidence_of(workspace)?)
+                self.estimator.estimate(&pictures, workspace)?
             }
         };
         let starts = Starts::Hypotheses;
-        let refine =
-            |refiner| refined::refine(&self.estimator, refiner, &estimate, &evidence, starts);
+        let refine = |refiner| refined::refine(&self.estimator, refiner, estimate.clone(), starts);
         let answers = self.answers.iter().map(|answer| match answer {
             Answer::Estimate => Ok(estimate.pose),
             Answer::Refined => refine(&self.refiner),

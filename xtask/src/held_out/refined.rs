@@ -4,7 +4,7 @@ use anyhow::Result;
 use phalanx::{Estimate, Estimator, Progress, Refiner, SceneDescriber, Scenes, Workspace};
 use phalanx_hand::Pose;
 use phalanx_refine::{
-    Calibration, CalibrationFrame, CameraDoubt, Doubt, Evidence, HandDoubt, Moves, Refinement,
+    Calibration, CalibrationFrame, CameraDoubt, Doubt, HandDoubt, Moves, Refinement,
 };
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
@@ -42,15 +42,15 @@ pub(crate) fn refiner(
 pub(crate) fn refine(
     estimator: &Estimator,
     refiner: &Refiner,
-    estimate: &Estimate,
-    evidence: &[Evidence],
+    estimate: Estimate,
     starts: Starts,
 ) -> Result<Pose> {
-    let hypotheses = match starts {
-        Starts::Estimate => Vec::new(),
-        Starts::Hypotheses => estimator.hypotheses(estimate, refiner.starts())?,
-    };
-    Ok(refiner.refine_best(evidence, estimate, &hypotheses)?[0].pose)
+    Ok(match starts {
+        Starts::Estimate => {
+            refiner.refine(&refiner.evidence_of(&estimate.observation)?, &estimate)?.pose
+        }
+        Starts::Hypotheses => refiner.refine_estimate(estimator, estimate)?.fit.pose,
+    })
 }
 
 /// Calibrates each hand of a test from other frames of it; a refiner for each.
@@ -93,7 +93,7 @@ fn calibrated(
     let mut workspace = Workspace::default();
     let frame = |seen: &Vec<Silhouette>| -> Result<CalibrationFrame> {
         let estimate = estimator.estimate_silhouettes(seen, &mut workspace)?;
-        Ok(refiner.frame(refiner.evidence(seen)?, &estimate)?)
+        Ok(refiner.frame(&estimate)?)
     };
     let frames = frames.iter().map(frame).collect::<Result<Vec<_>>>()?;
     let doubt = Doubt::default();

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result};
 use phalanx::{
-    Estimate, Estimator, Framing, Preset, Progress, Refiner, Shard, Training, Workspace,
+    Estimate, Estimator, Framing, Observation, Preset, Progress, Refiner, Shard, Training, Workspace,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
@@ -62,13 +62,11 @@ pub(super) fn learn(
 impl Learnt {
     /// The estimate of a frame, and what is to be refined.
     pub(super) fn start(&self, seen: &Seen, workspace: &mut Workspace) -> Result<Start> {
-        let estimate = self.estimator.estimate_silhouettes(&seen.silhouettes, workspace)?;
-        let estimate = self.estimator.place(estimate, &seen.windows)?;
-        let pairs = seen.windows.iter().zip(&seen.silhouettes);
-        let evidence = pairs.map(|(window, silhouette)| window.evidence(silhouette));
-        let evidence = evidence.collect::<Result<_, _>>()?;
+        let observation = Observation::through_windows(&seen.silhouettes, &seen.windows);
+        let estimate = self.estimator.estimate_observation(observation, workspace)?;
+        let evidence = self.refiner.evidence_of(&estimate.observation)?;
         // How hands are before a camera, and no more: starts of every posture are compared by it.
-        let open = estimate.std.map(|std| if std > 0.0 { f64::INFINITY } else { 0.0 });
+        let open = estimate.std.map(|std| std.map(|_| f64::INFINITY));
         let prior = self.refiner.prior(&estimate.pose, &open)?;
         Ok(Start { estimate, evidence, prior })
     }

@@ -7,7 +7,7 @@ use anyhow::Result;
 use faer::Mat;
 use image::RgbImage;
 use phalanx::{
-    Estimator, EvenlySpaced, Framing, Progress, Refiner, Regressor, Scenes, Shard, Training,
+    Estimator, EvenlySpaced, Framing, Observation, Progress, Refiner, Regressor, Scenes, Shard, Training,
     Workspace, describe_scenes, targets,
 };
 use phalanx_camera::Rig;
@@ -140,12 +140,9 @@ fn estimate(
 ) -> Result<(Pose, Pose)> {
     let views = estimator.rig().cameras.len();
     let (windows, silhouettes) = (&seen.windows[..views], &seen.silhouettes[..views]);
-    let estimate = estimator.estimate_silhouettes(silhouettes, workspace)?;
-    let estimate = estimator.place(estimate, windows)?;
-    let pairs = windows.iter().zip(silhouettes);
-    let evidence: Vec<_> =
-        pairs.map(|(window, seen)| window.evidence(seen)).collect::<Result<_, _>>()?;
-    let refined = refiner.refine(&evidence, &estimate)?;
+    let observation = Observation::through_windows(silhouettes, windows);
+    let estimate = estimator.estimate_observation(observation, workspace)?;
+    let refined = refiner.refine(&refiner.evidence_of(&estimate.observation)?, &estimate)?;
     Ok((estimate.pose, refined.pose))
 }
 

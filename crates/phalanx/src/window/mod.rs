@@ -54,6 +54,11 @@ impl Window {
         Ok(Self { camera: virtual_camera, hand: *hand, to_picture, picture })
     }
 
+    /// The picture's width and height, px.
+    pub fn picture(&self) -> (u32, u32) {
+        self.picture
+    }
+
     /// A mask of the picture as the window shows it: 255 where at least half of a pixel is hand.
     pub fn resample(&self, mask: &GrayImage, seen: &mut GrayImage) {
         resample::resample(mask, &self.to_picture, seen);

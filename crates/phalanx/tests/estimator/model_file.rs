@@ -27,7 +27,7 @@ fn try_out(bytes: &[u8]) {
         return;
     };
     if let Ok(found) = estimate(&estimator, &masks(&top(), &unseen()[2])) {
-        let numbers = || found.pose.0.iter().chain(&found.std);
+        let numbers = || found.pose.0.iter().chain(found.std.iter().flatten());
         assert!(numbers().all(|number| number.is_finite()), "{found:?}");
         assert!(found.joints.iter().all(|joint| joint.is_finite()), "{found:?}");
     }
