@@ -5,12 +5,11 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use image::{GrayImage, RgbImage};
 use phalanx::{
-    Beside, Descriptor, Estimator, OrientationRule, Picture, PoseContexts, Regressor, Segmenter,
-    Silent, Training, Workspace, describe_poses, descriptors, targets,
+    Estimator, NominalScenes, OrientationRule, Picture, Regressor, Segmenter, Silent, Training,
+    Workspace, describe_each,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
-use phalanx_multiview::{Concatenation, Vocabulary};
 use phalanx_render::{Appearance, Renderer};
 use phalanx_rvm::{Cascade, Stop};
 use phalanx_segmentation::SkinModel;
@@ -45,29 +44,17 @@ struct TrainingSet {
     rig: Rig,
     hand: HandShape,
     poses: Vec<Pose>,
-    contexts: Vec<PoseContexts>,
-    views: Concatenation,
 }
 
 impl TrainingSet {
     fn new() -> Self {
         let (rig, hand) = (rig(), HandShape::adult());
-        let poses: Vec<Pose> = (0..SAMPLES).map(pose).collect();
-        let contexts = describe_poses(&rig, &hand, &poses, OrientationRule::default(), &Silent)
-            .expect("all poses can be seen");
-        let views = Vocabulary::default()
-            .fit(&contexts, phalanx_shape_context::BINS)
-            .expect("enough shape contexts");
-        Self { rig, hand, poses, contexts, views }
+        Self { rig, hand, poses: (0..SAMPLES).map(pose).collect() }
     }
 
-    fn estimator(&self, regressor: &Regressor) -> Estimator {
-        let x = descriptors(&self.views, &self.contexts).expect("contexts of these views");
-        let model = regressor.fit(&x, &targets(&self.poses)).expect("a good training set").model;
-        let (rig, hand) = (self.rig.clone(), self.hand.clone());
-        let views = self.views.clone();
-        let descriptor = Descriptor::new(OrientationRule::default(), views, Beside::Nothing);
-        Estimator::from_parts(rig, hand, descriptor, model).expect("parts that fit")
+    fn estimator(&self, regressor: Regressor) -> Estimator {
+        let training = Training { regressor, ..Training::default() };
+        training.run(&self.rig, &self.hand, &self.poses, &Silent).expect("a good training set")
     }
 }
 
@@ -98,7 +85,7 @@ fn estimate(c: &mut Criterion) {
     });
     let mut workspace = Workspace::default();
     for (name, regressor) in [("kernel ridge", Training::default().regressor), ("both", both)] {
-        let estimator = set.estimator(&regressor);
+        let estimator = set.estimator(regressor);
         for (kind, pictures) in [("photographs", &photographs), ("masks", &masks)] {
             c.bench_function(&format!("three 640x480 {kind} to a pose/{name}"), |b| {
                 b.iter(|| estimator.estimate(black_box(pictures), &mut workspace).expect("a hand"));
@@ -112,8 +99,8 @@ fn training(c: &mut Criterion) {
     let poses: Vec<Pose> = (0..10).map(pose).collect();
     c.bench_function("draw and describe ten poses in three views", |b| {
         b.iter(|| {
-            describe_poses(&rig, &hand, black_box(&poses), OrientationRule::default(), &Silent)
-                .expect("all poses can be seen")
+            let scenes = NominalScenes { rig: &rig, hand: &hand, poses: black_box(&poses) };
+            describe_each(&rig, &scenes, OrientationRule::default(), &Silent).expect("cameras draw")
         });
     });
 }

@@ -3,13 +3,14 @@
 use faer::{Mat, MatRef};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape};
-use phalanx_rvm::{Columns, Components, Metric, Pilot};
+use phalanx_rvm::{Columns, Components, Metric, Pilot, random_subset};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::regressor::{columns_of, evenly_spaced};
+use crate::regressor::{Kept, columns_of};
+use crate::scene::SUBSET_SEED;
 use crate::{
-    Descriptor, Error, EvenlySpaced, Losses, Progress, Regressor, Result, Scenes, Training,
+    Descriptor, Error, Losses, Progress, SceneSubset, Regressor, Result, Scenes, Training,
     describe_each, describe_scenes, targets,
 };
 
@@ -47,17 +48,17 @@ impl Training {
         scenes: &dyn Scenes,
         progress: &dyn Progress,
     ) -> Result<Basis> {
-        self.regressor.streams()?;
-        let spaced = EvenlySpaced::new(scenes, Training::CODEBOOK_SCENES);
-        let described = describe_each(rig, &spaced, self.sight(), progress)?;
+        self.regressor.check_samples(scenes.count(), self.least_dim(rig.cameras.len()))?;
+        let some = SceneSubset::new(scenes, Training::CODEBOOK_SCENES);
+        let described = describe_each(rig, &some, self.sight(), progress)?;
         let (mut contexts, mut losses) = (Vec::with_capacity(described.len()), Losses::default());
         for (place, described) in described.into_iter().enumerate() {
             match described {
                 Ok(described) => contexts.push(described),
-                Err(error) => losses.add(spaced.number(place), &error),
+                Err(error) => losses.add(some.number(place), &error),
             }
         }
-        losses.check(spaced.count())?;
+        losses.check(some.count())?;
         if contexts.len() < 2 {
             return Err(Error::TooFewPoses { found: contexts.len() });
         }
@@ -65,14 +66,14 @@ impl Training {
         let descriptor = self.descriptor(&contexts)?;
         drop(contexts);
         progress.step();
-        let pilot = evenly_spaced(scenes.count(), self.regressor.pilot());
+        let pilot = random_subset(scenes.count(), self.regressor.pilot(), SUBSET_SEED);
         progress.begin("render and describe", pilot.len());
         let described = describe_scenes(rig, scenes, &pilot, &descriptor, progress)?;
         // These scenes come again, and are counted then.
         let (pilot, x) = described_ones(&pilot, described, &mut Losses::default());
         let y = targets_of(scenes, &pilot);
         let reading = self.regressor.reading(&x, &y, &descriptor, progress)?;
-        let chosen = evenly_spaced(pilot.len(), self.regressor.centres());
+        let chosen = random_subset(pilot.len(), self.regressor.centres(), SUBSET_SEED);
         let [x, y] = [x, y].map(|all| columns_of(all.as_ref(), &chosen));
         let x = reading.of(x)?;
         let numbers = |all: &Mat<f64>| all.col_iter().flat_map(|c| c.iter().copied()).collect();
@@ -132,6 +133,7 @@ impl Basis {
         let y = MatRef::from_column_major_slice(&self.pilot_y, Dof::COUNT, samples);
         match (&self.regressor, &self.reading) {
             (Regressor::Network(_), Reading::Components(_)) => Ok(Vec::new()),
+            (regressor, Reading::Whole) if regressor.kept() != Kept::Sums => Ok(Vec::new()),
             (Regressor::LearntMetric(fitter), Reading::Metric(metric)) => {
                 let of_group = |group: usize| {
                     let y = metric.targets(group, y);
@@ -141,15 +143,16 @@ impl Basis {
                 };
                 (0..metric.groups.len()).into_par_iter().map(of_group).collect()
             }
-            (Regressor::Network(_) | Regressor::LearntMetric(_), _)
-            | (_, Reading::Components(_) | Reading::Metric(_)) => Err(Error::FileContent {
-                what: "training part",
-                reason: "what it reads is not what its regressor reads".to_owned(),
-            }),
-            (regressor, Reading::Whole) => {
-                let pilot = Pilot { x, y, samples: &self.pilot };
-                Ok(vec![Columns::new(&pilot, regressor.summed()?)?])
-            }
+            (regressor, reading) => match (regressor.summed(), reading) {
+                (Some(kernel), Reading::Whole) => {
+                    let pilot = Pilot { x, y, samples: &self.pilot };
+                    Ok(vec![Columns::new(&pilot, kernel)?])
+                }
+                _ => Err(Error::FileContent {
+                    what: "training part",
+                    reason: "what it reads is not what its regressor reads".to_owned(),
+                }),
+            },
         }
     }
 }

@@ -108,6 +108,27 @@ pub enum Error {
         /// How many there are.
         found: usize,
     },
+    /// A given training pose that some camera cannot see whole enough to be described.
+    #[error("training pose {pose}: {reason}")]
+    LostPose {
+        /// Its position in the list of poses, from 0.
+        pose: usize,
+        /// The camera and the reason.
+        reason: String,
+    },
+    /// More training samples than a regressor takes that keeps them all.
+    #[error(
+        "{regressor} keeps all samples and takes at most {most}, not {found}; learn from fewer, or by a \
+         preset or Nyström's regression, which take any number"
+    )]
+    TooManySamples {
+        /// The regressor.
+        regressor: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many it takes.
+        most: usize,
+    },
     /// More training scenes than can be done without that some camera does not show.
     #[error(
         "{lost} of {scenes} training scenes cannot be used, more than {} %: {losses}; check where the rig's \
@@ -220,14 +241,6 @@ pub enum Error {
     NoShard {
         /// The text.
         text: String,
-    },
-    /// A regressor that cannot be learnt in shards.
-    #[error("{regressor} cannot be learnt in shards: {reason}")]
-    NotInShards {
-        /// Which.
-        regressor: &'static str,
-        /// Why not.
-        reason: &'static str,
     },
     /// Parts of different trainings.
     #[error("the parts are not of one training: they differ in {what}")]

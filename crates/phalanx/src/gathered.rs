@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::basis::{Basis, Reading};
+use crate::regressor::Kept;
 use crate::{Error, Progress, Regression, Result};
 
 /// Enough of the scenes to fit the regressor.
@@ -16,20 +17,59 @@ use crate::{Error, Progress, Regression, Result};
 pub(crate) enum Gathered {
     /// Sums over the columns of all numbers of the pose, or over those of each group.
     Sums(Vec<Sums>),
-    /// The samples themselves, by the number of their block of scenes.
-    Samples(BTreeMap<usize, Samples>),
+    /// What the regressor reads of each sample, by the number of its block of scenes.
+    Samples(BTreeMap<usize, Samples<f32>>),
+    /// The whole descriptor of each sample, likewise.
+    Descriptors(BTreeMap<usize, Samples<f64>>),
 }
 
 /// Some samples, one after the other.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Samples {
-    /// What the regressor reads.
-    x: Vec<f32>,
+pub(crate) struct Samples<T> {
+    /// What is kept of each.
+    x: Vec<T>,
     /// Poses, 28 numbers each.
     y: Vec<f64>,
 }
 
-impl Samples {
+impl<T> Samples<T> {
+    fn new(z: &Mat<f64>, y: &Mat<f64>, number: impl Fn(f64) -> T) -> Self {
+        let number = &number;
+        let x = z.col_iter().flat_map(|column| column.iter().map(|&value| number(value)));
+        let y = y.col_iter().flat_map(|column| column.iter().copied());
+        Self { x: x.collect(), y: y.collect() }
+    }
+
+    /// All samples of some blocks, one after the other.
+    fn of_blocks(blocks: BTreeMap<usize, Self>) -> Self {
+        let count = |length: fn(&Self) -> usize| blocks.values().map(length).sum();
+        let mut x = Vec::with_capacity(count(|samples| samples.x.len()));
+        let mut y = Vec::with_capacity(count(|samples| samples.y.len()));
+        for mut samples in blocks.into_values() {
+            x.append(&mut samples.x);
+            y.append(&mut samples.y);
+        }
+        Self { x, y }
+    }
+
+    /// Refuses blocks that are not held, or not of so many samples.
+    fn check(
+        blocks: &BTreeMap<usize, Self>,
+        read: usize,
+        held: &[usize],
+        samples: Option<usize>,
+    ) -> Result<()> {
+        let foreign = |part, found, expected| Err(Error::Mismatch { part, found, expected });
+        if let Some(&block) = blocks.keys().find(|block| held.binary_search(block).is_err()) {
+            return foreign("the number of a block of samples", block, held.len());
+        }
+        let found = blocks.values().map(|samples| samples.count(read)).sum::<Option<usize>>();
+        if found == samples {
+            return Ok(());
+        }
+        foreign("samples", found.unwrap_or(0), samples.unwrap_or(0))
+    }
+
     /// How many there are, if they are whole.
     fn count(&self, read: usize) -> Option<usize> {
         let count = self.y.len() / Dof::COUNT;
@@ -42,10 +82,11 @@ impl Samples {
 impl Gathered {
     /// Nothing yet, for a regressor with these columns.
     pub(crate) fn new(basis: &Basis, columns: &[Columns]) -> Self {
-        if basis.regressor.needs_samples() {
-            return Self::Samples(BTreeMap::new());
+        match basis.regressor.kept() {
+            Kept::Sums => Self::Sums(columns.iter().map(Sums::new).collect()),
+            Kept::Readings => Self::Samples(BTreeMap::new()),
+            Kept::Descriptors { .. } => Self::Descriptors(BTreeMap::new()),
         }
-        Self::Sums(columns.iter().map(Sums::new).collect())
     }
 
     /// Adds the descriptors and poses of a block of scenes.
@@ -60,10 +101,10 @@ impl Gathered {
         let z = basis.reading.of(x)?;
         match (self, &basis.reading) {
             (Self::Samples(blocks), _) => {
-                let x = z.col_iter().flat_map(|column| column.iter().map(|&v| v as f32));
-                let y = y.col_iter().flat_map(|column| column.iter().copied());
-                let (x, y) = (x.collect(), y.collect());
-                blocks.insert(block, Samples { x, y });
+                blocks.insert(block, Samples::new(&z, y, |value| value as f32));
+            }
+            (Self::Descriptors(blocks), _) => {
+                blocks.insert(block, Samples::new(&z, y, |value| value));
             }
             (Self::Sums(sums), Reading::Metric(metric)) => {
                 for (group, (sums, columns)) in sums.iter_mut().zip(columns).enumerate() {
@@ -85,6 +126,7 @@ impl Gathered {
                 }
             }
             (Self::Samples(blocks), Self::Samples(others)) => blocks.extend(others),
+            (Self::Descriptors(blocks), Self::Descriptors(others)) => blocks.extend(others),
             _ => return Err(Error::ForeignPart { what: "their regressors" }),
         }
         Ok(())
@@ -99,9 +141,10 @@ impl Gathered {
         samples: Option<usize>,
     ) -> Result<()> {
         let foreign = |part, found, expected| Err(Error::Mismatch { part, found, expected });
+        let kept = basis.regressor.kept();
         match self {
             Self::Sums(sums) => {
-                if sums.len() != columns.len() {
+                if sums.len() != columns.len() || kept != Kept::Sums {
                     return foreign("sums", sums.len(), columns.len());
                 }
                 // Sums refuse to be joined with those of other columns.
@@ -115,21 +158,14 @@ impl Gathered {
                     None => Ok(()),
                 }
             }
-            Self::Samples(blocks) => {
-                if !columns.is_empty() {
-                    return foreign("sums", 0, columns.len());
-                }
-                if let Some(&block) = blocks.keys().find(|block| held.binary_search(block).is_err())
-                {
-                    return foreign("the number of a block of samples", block, held.len());
-                }
-                let counts = blocks.values().map(|samples| samples.count(basis.read()));
-                let found = counts.sum::<Option<usize>>();
-                if found == samples {
-                    return Ok(());
-                }
-                foreign("samples", found.unwrap_or(0), samples.unwrap_or(0))
+            _ if !columns.is_empty() => foreign("sums", 0, columns.len()),
+            Self::Samples(blocks) if kept == Kept::Readings => {
+                Samples::check(blocks, basis.read(), held, samples)
             }
+            Self::Descriptors(blocks) if matches!(kept, Kept::Descriptors { .. }) => {
+                Samples::check(blocks, basis.read(), held, samples)
+            }
+            Self::Samples(_) | Self::Descriptors(_) => foreign("kinds of samples", 0, 1),
         }
     }
 
@@ -143,17 +179,21 @@ impl Gathered {
                 Ok(regression)
             }
             Self::Samples(blocks) => {
-                let count = |length: fn(&Samples) -> usize| blocks.values().map(length).sum();
-                let mut x = Vec::with_capacity(count(|samples| samples.x.len()));
-                let mut y = Vec::with_capacity(count(|samples| samples.y.len()));
-                for mut samples in blocks.into_values() {
-                    x.append(&mut samples.x);
-                    y.append(&mut samples.y);
-                }
+                let Samples { x, y } = Samples::of_blocks(blocks);
                 let count = y.len() / Dof::COUNT;
                 let x = MatRef::from_column_major_slice(&x, basis.read(), count);
                 let y = MatRef::from_column_major_slice(&y, Dof::COUNT, count);
                 basis.regressor.fit_samples(&basis.reading, x, y, progress)
+            }
+            Self::Descriptors(blocks) => {
+                progress.begin("fit the regressor", 1);
+                let Samples { x, y } = Samples::of_blocks(blocks);
+                let count = y.len() / Dof::COUNT;
+                let x = MatRef::from_column_major_slice(&x, basis.read(), count).to_owned();
+                let y = MatRef::from_column_major_slice(&y, Dof::COUNT, count).to_owned();
+                let fit = basis.regressor.fit(&x, &y)?;
+                progress.step();
+                Ok(fit.model.into())
             }
         }
     }

@@ -58,12 +58,12 @@ pub use random::ItemRandom;
 pub use refiner::{RefinedEstimate, Refiner};
 pub use regression::Regression;
 pub use regressor::{LearntMetric, NetworkTraining, Regressor};
-pub use scene::{EvenlySpaced, NominalScenes, Scene, Scenes, View};
+pub use scene::{NominalScenes, Scene, SceneSubset, Scenes, View};
 pub use shard::Shard;
 pub use synthesis::{PoseSource, SampledScenes, SceneSampler};
 pub use trainer::{Cost, Trainer};
 pub use training::{Description, Training, descriptors, targets};
 pub use training_views::{
-    PoseContexts, SceneDescriber, describe_each, describe_poses, draw_silhouette,
+    PoseContexts, SceneDescriber, describe_each, draw_silhouette,
 };
 pub use window::{Framing, Window, WindowFinder};

@@ -54,6 +54,12 @@ impl Losses {
         self.0.iter().map(|((camera, reason), loss)| (camera.as_str(), *reason, loss.scenes))
     }
 
+    /// The first scene that is lost, and why.
+    pub fn first(&self) -> Option<(usize, &str)> {
+        let first = self.0.values().min_by_key(|loss| loss.first)?;
+        Some((first.first, &first.message))
+    }
+
     /// One more scene that is lost.
     pub(crate) fn add(&mut self, scene: usize, error: &Error) {
         let error = match error {

@@ -18,7 +18,7 @@ const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", 
 /// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
 /// and to [`finish`](Self::finish) the estimator. For most regressors that is sums, whose size does
 /// not depend on the number of scenes; a [network](crate::Regressor::Network) keeps what it reads of
-/// each.
+/// each, a dense regressor the descriptor of each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     basis: Basis,
@@ -46,13 +46,13 @@ impl Training {
     /// else give parts which, merged in any order, [finish](Part::finish) to the bytes of a single
     /// run of [`Shard::WHOLE`].
     ///
-    /// The codebooks are learnt from at most a thousand scenes, evenly spaced, and the regressor
+    /// The codebooks are learnt from at most a thousand scenes, chosen at random, and the regressor
     /// has a [limited number](crate::Regressor::CANDIDATES) of Gaussians. `rig` and `hand` are what
     /// the estimator takes pictures to be of, whatever the scenes are.
     ///
     /// # Errors
     /// An unusable rig or hand, fewer than two scenes that can be described, more than
-    /// [`Losses::MOST`] that cannot, a regressor that needs its samples at once, or what the stages
+    /// [`Losses::MOST`] that cannot, more than the regressor takes if it keeps all, or what the stages
     /// report.
     pub fn shard(
         &self,

@@ -5,11 +5,12 @@ use phalanx_hand::{Digit, Dof};
 use phalanx_rvm::{
     Block, Bridges, Cascade, Columns, Components, Fit, ForwardSelection, GradientMetric, Kernel,
     KernelRidge, Metric, MultivariateRvm, NetworkOnComponents, Nystrom, Perceptron, Pilot, Ridge,
-    Sums, Tipping,
+    Sums, Tipping, random_subset,
 };
 use serde::{Deserialize, Serialize};
 
 use crate::basis::Reading;
+use crate::scene::SUBSET_SEED;
 use crate::{Descriptor, Error, Progress, Regression, Result};
 
 /// Samples that are added to sums at a time.
@@ -47,13 +48,13 @@ pub enum Regressor {
 /// combination.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LearntMetric {
-    /// Scenes, evenly spaced, that principal components and distances are learnt from.
+    /// Scenes, chosen at random, that principal components and distances are learnt from.
     pub pilot: usize,
     /// Principal components of each view's code, and of what is beside it, at most.
     pub components: usize,
     /// How distances are learnt.
     pub metric: GradientMetric,
-    /// Gaussians of each digit's regression, at most; those of the pilot, evenly spaced.
+    /// Gaussians of each digit's regression, at most; some of the pilot's, chosen at random.
     pub centres: usize,
     /// The regression.
     pub regression: Nystrom,
@@ -62,12 +63,23 @@ pub struct LearntMetric {
 /// How a network is trained. What it reads of every scene is kept until then: some kilobytes each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NetworkTraining {
-    /// Scenes, evenly spaced, that principal components are learnt from.
+    /// Scenes, chosen at random, that principal components are learnt from.
     pub pilot: usize,
     /// Principal components of each view's code, and of what is beside it, at most.
     pub components: usize,
     /// The network.
     pub perceptron: Perceptron,
+}
+
+/// What training keeps of its scenes for a regressor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kept {
+    /// Sums over them, of a size that does not depend on their number.
+    Sums,
+    /// What the regressor reads of each.
+    Readings,
+    /// The descriptor of each, which bounds their number.
+    Descriptors { regressor: &'static str, most: usize },
 }
 
 impl LearntMetric {
@@ -96,44 +108,70 @@ fn groups() -> Vec<Vec<usize>> {
 }
 
 impl Regressor {
-    /// Most samples that Gaussians are put on by default. Of more, as many are candidates, evenly
-    /// spaced, while all are fitted to: then no matrix has a row or column for each sample.
+    /// Most samples that Gaussians are put on by default. Of more, as many are candidates, chosen at
+    /// random, while all are fitted to: then no matrix has a row or column for each sample.
     pub const CANDIDATES: usize = 2000;
+
+    /// Most samples of a regressor with a basis function on each: a matrix of so many rows and columns
+    /// takes 800 MB.
+    pub const MOST_DENSE: usize = 10_000;
+
+    /// Most bytes of descriptors that a regressor keeps which needs them all.
+    const MOST_BYTES: usize = 1 << 31;
 
     /// Scenes, at most, that are looked at before the others stream by.
     pub(crate) fn pilot(&self) -> usize {
-        match self {
-            Self::LearntMetric(fitter) => fitter.pilot,
-            Self::Network(fitter) => fitter.pilot,
+        match (self.kept(), self) {
+            (_, Self::LearntMetric(fitter)) => fitter.pilot,
+            (_, Self::Network(fitter)) => fitter.pilot,
+            (Kept::Descriptors { .. }, _) => 0,
             _ => Self::CANDIDATES,
         }
     }
 
-    /// Gaussians, at most, where scenes stream by.
+    /// Gaussians, at most, that are put on scenes of the pilot.
     pub(crate) fn centres(&self) -> usize {
-        match self {
-            Self::LearntMetric(fitter) => fitter.centres,
-            Self::Network(_) => 0,
-            _ => Self::CANDIDATES,
+        match (self.kept(), self) {
+            (_, Self::LearntMetric(fitter)) => fitter.centres,
+            (Kept::Sums, _) => Self::CANDIDATES,
+            (Kept::Readings | Kept::Descriptors { .. }, _) => 0,
         }
     }
 
-    /// Whether it is fitted to samples rather than to sums over them, where scenes stream by.
-    pub(crate) fn needs_samples(&self) -> bool {
-        matches!(self, Self::Network(_))
+    /// What is kept of the scenes.
+    pub(crate) fn kept(&self) -> Kept {
+        let dense = |regressor| Kept::Descriptors { regressor, most: Self::MOST_DENSE };
+        match self {
+            Self::Network(_) => Kept::Readings,
+            Self::KernelRidge(_) => dense("dense kernel regression"),
+            Self::Tipping(fitter) if fitter.kernel != Kernel::Linear => {
+                dense("Tipping's machine with Gaussian kernels")
+            }
+            Self::Tipping(_) => {
+                Kept::Descriptors { regressor: "Tipping's machine", most: usize::MAX }
+            }
+            // Features are selected before samples can be summed.
+            Self::Cascade(_) => Kept::Descriptors { regressor: "both", most: usize::MAX },
+            _ => Kept::Sums,
+        }
     }
 
-    /// Bytes that are kept of each sample of so many views.
+    /// Refuses more samples than are kept, of descriptors of this length.
+    pub(crate) fn check_samples(&self, found: usize, dim: usize) -> Result<()> {
+        let Kept::Descriptors { regressor, most } = self.kept() else { return Ok(()) };
+        let most = most.min(Self::MOST_BYTES / (dim.max(1) * size_of::<f64>()));
+        if found <= most {
+            return Ok(());
+        }
+        Err(Error::TooManySamples { regressor, found, most })
+    }
+
+    /// Bytes that are kept of each sample of so many views, where it is not the descriptor.
     pub(crate) fn bytes(&self, views: usize) -> usize {
         let Self::Network(fitter) = self else { return 0 };
         // Of every view's code, and of what is beside it.
         let read = views.saturating_mul(2 * fitter.components);
         read.saturating_mul(size_of::<f32>()) + 2 * Dof::COUNT * size_of::<f64>()
-    }
-
-    /// Refuses a regressor that cannot be learnt from scenes that stream by.
-    pub(crate) fn streams(&self) -> Result<()> {
-        if self.needs_samples() { Ok(()) } else { self.summed().map(drop) }
     }
 
     /// Learns what to read of a descriptor from a pilot's descriptors, K × n, and poses, 28 × n.
@@ -212,33 +250,22 @@ impl Regressor {
         Ok(fit?)
     }
 
-    /// The basis functions whose sums over the samples are all that a fit needs.
-    ///
-    /// # Errors
-    /// A regressor that needs the samples at once, or goes through them twice.
-    pub(crate) fn summed(&self) -> Result<Kernel> {
-        let not = |regressor, reason| Err(Error::NotInShards { regressor, reason });
+    /// The basis functions whose sums over the samples are all that a fit needs; `None` of a regressor
+    /// that needs the samples themselves.
+    pub(crate) fn summed(&self) -> Option<Kernel> {
         match self {
-            Self::Ridge(_) => Ok(Kernel::Linear),
-            Self::Bridges(fitter) => Ok(fitter.kernel),
-            Self::Forward(fitter) => Ok(fitter.kernel),
-            Self::MultivariateRvm(fitter) => Ok(fitter.kernel),
-            Self::Nystrom(fitter) => Ok(Kernel::Gaussian(fitter.width)),
-            Self::LearntMetric(fitter) => Ok(Kernel::Gaussian(fitter.regression.width)),
-            Self::Cascade(_) => {
-                not("both", "its features are selected before samples can be summed")
-            }
-            Self::Tipping(_) => not("Tipping's machine", "it needs all samples at once"),
-            Self::Network(_) => not("a network", "it needs its samples, not sums over them"),
-            Self::KernelRidge(_) => {
-                not("dense kernel regression", "it needs all samples at once; Nyström's does not")
-            }
+            Self::Ridge(_) => Some(Kernel::Linear),
+            Self::Bridges(fitter) => Some(fitter.kernel),
+            Self::Forward(fitter) => Some(fitter.kernel),
+            Self::MultivariateRvm(fitter) => Some(fitter.kernel),
+            Self::Nystrom(fitter) => Some(Kernel::Gaussian(fitter.width)),
+            Self::LearntMetric(fitter) => Some(Kernel::Gaussian(fitter.regression.width)),
+            Self::Cascade(_) | Self::Tipping(_) | Self::KernelRidge(_) | Self::Network(_) => None,
         }
     }
 
     /// Fits sums over the columns of [`summed`](Self::summed).
     pub(crate) fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
-        self.summed()?;
         Ok(match self {
             Self::Ridge(fitter) => fitter.fit_sums(columns, sums)?,
             Self::Bridges(fitter) => fitter.fit_sums(columns, sums)?,
@@ -247,14 +274,14 @@ impl Regressor {
             Self::Nystrom(fitter) => fitter.fit_sums(columns, sums)?,
             Self::LearntMetric(fitter) => fitter.regression.fit_sums(columns, sums)?,
             Self::Cascade(_) | Self::Tipping(_) | Self::KernelRidge(_) | Self::Network(_) => {
-                unreachable!("refused above")
+                return Err(Error::Mismatch { part: "sums", found: 1, expected: 0 });
             }
         })
     }
 
     /// Fits by way of sums over batches of the samples.
     fn fit_to_sums_of(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
-        let chosen = evenly_spaced(x.ncols(), Self::CANDIDATES);
+        let chosen = random_subset(x.ncols(), Self::CANDIDATES, SUBSET_SEED);
         let [pilot_x, pilot_y] = [x, y].map(|all| columns_of(all, &chosen));
         let pilot = Pilot { x: pilot_x.as_ref(), y: pilot_y.as_ref(), samples: &chosen };
         if let Self::Cascade(fitter) = self {
@@ -264,7 +291,8 @@ impl Regressor {
             let gaussian = Columns::over(&pilot, kernel, first.model.selected_features())?;
             return Ok(fitter.fit_samples(first, &gaussian, &sums(&gaussian, x, y)?)?);
         }
-        let columns = Columns::new(&pilot, self.summed()?)?;
+        let expected = Error::Mismatch { part: "sums", found: 0, expected: 1 };
+        let columns = Columns::new(&pilot, self.summed().ok_or(expected)?)?;
         self.fit_sums(&columns, &sums(&columns, x, y)?)
     }
 }
@@ -280,10 +308,4 @@ fn sums(columns: &Columns, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Sum
 
 pub(crate) fn columns_of(all: MatRef<'_, f64>, chosen: &[usize]) -> Mat<f64> {
     Mat::from_fn(all.nrows(), chosen.len(), |row, k| all[(row, chosen[k])])
-}
-
-/// The numbers of at most `most` of `all` things, evenly spaced.
-pub(crate) fn evenly_spaced(all: usize, most: usize) -> Vec<usize> {
-    let count = all.min(most);
-    (0..count).map(|k| k * all / count).collect()
 }

@@ -3,8 +3,7 @@
 use glam::DAffine3;
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
-
-use crate::regressor::evenly_spaced;
+use phalanx_rvm::random_subset;
 
 /// One sample of training or testing: whose hand, in which pose, as which cameras see it.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,16 +65,21 @@ impl Scenes for NominalScenes<'_> {
     }
 }
 
-/// Some scenes of others, evenly spaced.
-pub struct EvenlySpaced<'a> {
+/// The seed by which some scenes are chosen to stand for all. The few that codebooks are learnt from are
+/// among the more of the pilot.
+pub(crate) const SUBSET_SEED: u64 = 0;
+
+/// Some scenes of others, chosen at random and in their order: every n-th of a periodic motion might see
+/// a single phase of it.
+pub struct SceneSubset<'a> {
     all: &'a dyn Scenes,
     numbers: Vec<usize>,
 }
 
-impl<'a> EvenlySpaced<'a> {
-    /// At most `most` of them.
+impl<'a> SceneSubset<'a> {
+    /// At most `most` of them; a smaller subset is part of a larger one.
     pub fn new(all: &'a dyn Scenes, most: usize) -> Self {
-        Self { all, numbers: evenly_spaced(all.count(), most) }
+        Self { all, numbers: random_subset(all.count(), most, SUBSET_SEED) }
     }
 
     /// The number among all scenes of one of these.
@@ -84,7 +88,7 @@ impl<'a> EvenlySpaced<'a> {
     }
 }
 
-impl Scenes for EvenlySpaced<'_> {
+impl Scenes for SceneSubset<'_> {
     fn count(&self) -> usize {
         self.numbers.len()
     }

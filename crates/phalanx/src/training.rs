@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::{
     Beside, Descriptor, Error, Estimator, Framing, NominalScenes, OrientationRule, PoseContexts,
-    Progress, Regressor, Result, Shard, Sight, describe_poses,
+    Progress, Regressor, Result, Shard, Sight,
 };
 
 /// How an estimator is learnt. The default is the paper's descriptor, turned to the forearm's axis,
@@ -58,15 +58,16 @@ impl Default for Training {
 }
 
 impl Training {
-    /// Most scenes whose shape contexts codebooks are learnt from where scenes stream by, evenly
-    /// spaced.
+    /// Most scenes whose shape contexts codebooks are learnt from, chosen at random.
     pub const CODEBOOK_SCENES: usize = 1000;
 
-    /// Draws `poses` of the hand through the rig, describes them and learns an estimator. The
-    /// same input gives the same estimator at any number of threads.
+    /// Draws `poses` of the hand through the rig, describes them and learns an estimator, as
+    /// [`shard`](Self::shard) does, but that every pose must be seen. The same input gives the same
+    /// estimator at any number of threads.
     ///
     /// # Errors
-    /// A rig, hand or pose that cannot be drawn or described, or what the stages report.
+    /// A rig, hand or pose that cannot be drawn or described, more poses than the regressor takes, or
+    /// what the stages report.
     pub fn run(
         &self,
         rig: &Rig,
@@ -79,22 +80,20 @@ impl Training {
         if poses.len() < 2 {
             return Err(Error::TooFewPoses { found: poses.len() });
         }
-        if self.description != Description::Counts
-            || matches!(self.regressor, Regressor::LearntMetric(_) | Regressor::Network(_))
-        {
-            let scenes = NominalScenes { rig, hand, poses };
-            return self.shard(rig, hand, &scenes, Shard::WHOLE, progress)?.finish(progress);
+        let scenes = NominalScenes { rig, hand, poses };
+        let part = self.shard(rig, hand, &scenes, Shard::WHOLE, progress)?;
+        if let Some((pose, reason)) = part.losses().first() {
+            return Err(Error::LostPose { pose, reason: reason.to_owned() });
         }
-        let contexts = describe_poses(rig, hand, poses, self.sight(), progress)?;
-        progress.begin("cluster shape contexts", 1);
-        let views = self.vocabulary.fit(&contexts, phalanx_shape_context::BINS)?;
-        progress.step();
-        let x = descriptors(&views, &contexts)?;
-        progress.begin("fit the regressor", 1);
-        let fit = self.regressor.fit(&x, &targets(poses))?;
-        progress.step();
-        let descriptor = Descriptor::new(self.sight(), views, Beside::Nothing);
-        Estimator::from_parts(rig.clone(), hand.clone(), descriptor, fit.model)
+        part.finish(progress)
+    }
+
+    /// A length that descriptors of so many views have at least.
+    pub(crate) fn least_dim(&self, views: usize) -> usize {
+        views.saturating_mul(match self.description {
+            Description::Counts => self.vocabulary.centres / views.max(1),
+            Description::Residuals => self.vocabulary.centres * phalanx_shape_context::BINS,
+        })
     }
 
     /// Bytes that are held at most, roughly: the shape contexts of the scenes that codebooks are learnt

@@ -10,29 +10,13 @@ use rayon::prelude::*;
 
 use crate::damage::make_ragged;
 use crate::{
-    Describer, Error, Framing, NominalScenes, Picture, Progress, Result, Scene, Scenes, Sight,
-    WindowFinder, working_camera,
+    Describer, Error, Framing, Picture, Progress, Result, Scene, Scenes, Sight, WindowFinder,
+    working_camera,
 };
 
 /// The shape contexts of one pose: for each camera, its contour points' histograms one after the
 /// other.
 pub type PoseContexts = Vec<Vec<f32>>;
-
-/// Draws `poses` of a hand through every camera of a rig and describes the silhouettes, in
-/// parallel; the result has one entry per pose, in order.
-///
-/// # Errors
-/// The first pose, in order, that a camera cannot see or describe.
-pub fn describe_poses(
-    rig: &Rig,
-    hand: &HandShape,
-    poses: &[Pose],
-    sight: impl Into<Sight>,
-    progress: &dyn Progress,
-) -> Result<Vec<PoseContexts>> {
-    let scenes = NominalScenes { rig, hand, poses };
-    describe_each(rig, &scenes, sight, progress)?.into_iter().collect()
-}
 
 /// Draws scenes through every camera of a rig and describes the silhouettes, in parallel; the
 /// result has one entry per scene, in order.

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use faer::Mat;
 use phalanx::{
-    EvenlySpaced, OrientationRule, PoseContexts, Progress, Scenes, Training, ViewCodebooks,
+    OrientationRule, PoseContexts, Progress, SceneSubset, Scenes, Training, ViewCodebooks,
     describe_each, describe_with, targets,
 };
 use phalanx_hand::Pose;
@@ -73,7 +73,7 @@ pub(crate) fn pilot_contexts(
     progress: &dyn Progress,
 ) -> Result<Vec<PoseContexts>> {
     let described =
-        describe_each(set.rig, &EvenlySpaced::new(set, Training::CODEBOOK_SCENES), rule, progress)?;
+        describe_each(set.rig, &SceneSubset::new(set, Training::CODEBOOK_SCENES), rule, progress)?;
     Ok(described.into_iter().filter_map(Result::ok).collect())
 }
 

@@ -7,7 +7,7 @@ use anyhow::Result;
 use faer::Mat;
 use image::RgbImage;
 use phalanx::{
-    Estimator, EvenlySpaced, Framing, Observation, Progress, Refiner, Regressor, Scenes, Shard, Training,
+    Estimator, Framing, Observation, Progress, Refiner, Regressor, SceneSubset, Scenes, Shard, Training,
     Workspace, describe_scenes, targets,
 };
 use phalanx_camera::Rig;
@@ -94,7 +94,7 @@ impl Learning<'_> {
     fn with_few(&self, all: &Estimator) -> Result<Estimator> {
         let Self { rig, hand, samples, progress } = self;
         let set = sets::loosely_placed(rig, hand, *samples);
-        let scenes = EvenlySpaced::new(&set, Regressor::CANDIDATES);
+        let scenes = SceneSubset::new(&set, Regressor::CANDIDATES);
         let numbers: Vec<usize> = (0..scenes.count()).collect();
         let descriptor = all.descriptor();
         progress.begin("describe for the selection", numbers.len());

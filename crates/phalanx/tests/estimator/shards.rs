@@ -5,8 +5,8 @@ use phalanx::{
     Silent, Trainer, Training,
 };
 use phalanx_camera::Rig;
-use phalanx_hand::{HandShape, coupled_pose};
-use phalanx_rvm::{Bridges, Cascade, Kernel, KernelRidge, Nystrom, Stop};
+use phalanx_hand::{Dof, HandShape, coupled_pose};
+use phalanx_rvm::{Bridges, Cascade, Kernel, KernelRidge, Lambda, Nystrom, Stop, Width};
 
 use crate::desk::{self, top};
 
@@ -108,12 +108,61 @@ fn parts_of_other_trainings_are_refused() {
 }
 
 #[test]
-fn regressors_that_need_all_samples_at_once_are_refused_before_any_work() {
-    for regressor in
-        [Regressor::Cascade(Cascade::default()), Regressor::KernelRidge(KernelRidge::default())]
-    {
-        let error = Random::new(usize::MAX / 2).shard(&regressor, 1, 1).unwrap_err();
-        assert!(matches!(error, Error::NotInShards { .. }), "{error}");
+fn more_samples_than_a_regressor_keeps_are_refused_before_any_work() {
+    for (regressor, count) in [
+        (Regressor::Cascade(Cascade::default()), usize::MAX / 2),
+        (Regressor::KernelRidge(KernelRidge::default()), 14_000),
+    ] {
+        let error = Random::new(count).shard(&regressor, 1, 1).unwrap_err();
+        assert!(matches!(error, Error::TooManySamples { found, .. } if found == count), "{error}");
+    }
+}
+
+#[test]
+fn what_keeps_its_samples_learns_in_shards_too() {
+    let scenes = Random::new(1100);
+    let dense = Regressor::KernelRidge(KernelRidge {
+        width: Width::Scatter(0.5),
+        lambda: Lambda::Given(0.01),
+    });
+    let shard = |index, count| {
+        let part = scenes.shard(&dense, index, count).unwrap();
+        Part::from_bytes(&part.to_bytes().unwrap()).unwrap()
+    };
+    let mut merged = shard(2, 2);
+    merged.merge(shard(1, 2)).unwrap();
+    assert_eq!(merged.finish(&Silent).unwrap(), shard(1, 1).finish(&Silent).unwrap());
+}
+
+/// Recorded motion whose poses come in cycles: of every second pose the same turn is seen.
+#[test]
+fn samples_of_a_periodic_motion_are_as_good_as_those_of_any_other() {
+    struct Cycles(Random);
+    impl Scenes for Cycles {
+        fn count(&self) -> usize {
+            self.0.count
+        }
+        fn scene(&self, number: usize) -> Scene {
+            let mut scene = self.0.scene(number / 2);
+            scene.pose[Dof::ThetaZ] = [0.0, 0.6][number % 2];
+            scene
+        }
+    }
+    let nystrom = Regressor::Nystrom(Nystrom::default());
+    let learn = |count: usize| {
+        let scenes = Cycles(Random::new(count));
+        let quick = desk::training(OrientationRule::default());
+        let training = Training { regressor: nystrom.clone(), ..quick };
+        let Random { rig, hand, .. } = &scenes.0;
+        training.shard(rig, hand, &scenes, Shard::WHOLE, &Silent).unwrap().finish(&Silent).unwrap()
+    };
+    // Twice as many as there are candidates: every second one of them would be the same turn.
+    let learnt = learn(2 * Regressor::CANDIDATES);
+    let mut pose = desk::unseen()[2];
+    for turn in [0.0, 0.6] {
+        pose[Dof::ThetaZ] = turn;
+        let found = desk::estimate(&learnt, &desk::masks(&top(), &pose)).unwrap().pose;
+        assert!((found[Dof::ThetaZ] - turn).abs() < 0.2, "{} for {turn}", found[Dof::ThetaZ]);
     }
 }
 
@@ -163,7 +212,7 @@ impl Scenes for OutOfSight {
     fn scene(&self, number: usize) -> Scene {
         let mut scene = self.all.scene(number);
         if number % self.every == 3 {
-            scene.pose[phalanx_hand::Dof::TX] = 5000.0;
+            scene.pose[Dof::TX] = 5000.0;
         }
         scene
     }
