@@ -61,11 +61,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut doubts = output::doubts(&estimator, &estimate);
     let hand = arguments.hand.as_deref().map(input::hand).transpose()?;
     let hand = hand.unwrap_or_else(|| estimator.hand().clone());
-    let estimate = if arguments.refine {
-        refine(&estimator, &hand, estimate, &mut doubts)?
-    } else {
-        estimate
-    };
+    let estimate =
+        if arguments.refine { refine(&estimator, &hand, estimate, &mut doubts)? } else { estimate };
     if let Some(path) = &arguments.overlay {
         let overlay = overlay(&estimator, &hand, &estimate, &pictures, &mut doubts)?;
         output::write_png(path, &overlay)?;

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::regressor::{Kept, columns_of};
 use crate::scene::SUBSET_SEED;
 use crate::{
-    Descriptor, Error, Losses, Progress, SceneSubset, Regressor, Result, Scenes, Training,
+    Descriptor, Error, Losses, Progress, Regressor, Result, SceneSubset, Scenes, Training,
     describe_each, describe_scenes, targets,
 };
 

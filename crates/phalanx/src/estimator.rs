@@ -10,7 +10,7 @@ use phalanx_segmentation::Silhouette;
 use crate::global_pose::place;
 use crate::{
     Descriptor, Error, Framing, Observation, ObservedView, OrientationRule, Picture, Regression,
-    Result, Window, WindowFinder, descriptor,
+    Result, WindowFinder, descriptor,
 };
 
 /// A pose estimator for one rig and one hand; see [`Training`](crate::Training) for how to get

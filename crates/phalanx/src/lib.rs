@@ -63,7 +63,5 @@ pub use shard::Shard;
 pub use synthesis::{PoseSource, SampledScenes, SceneSampler};
 pub use trainer::{Cost, Trainer};
 pub use training::{Description, Training, descriptors, targets};
-pub use training_views::{
-    PoseContexts, SceneDescriber, describe_each, draw_silhouette,
-};
+pub use training_views::{PoseContexts, SceneDescriber, describe_each, draw_silhouette};
 pub use window::{Framing, Window, WindowFinder};

@@ -10,9 +10,8 @@ use phalanx_segmentation::Silhouette;
 
 use crate::global_pose::PLACED;
 use crate::{
-    Error, Estimate, Estimator, Framing, Hypothesis, ItemRandom, Observation, ObservedView, Picture,
-    Result,
-    Workspace, working_camera,
+    Error, Estimate, Estimator, Framing, Hypothesis, ItemRandom, Observation, ObservedView,
+    Picture, Result, Workspace, working_camera,
 };
 
 /// Poses from the prior that tell how angles go together.
@@ -238,7 +237,8 @@ impl Refiner {
             None => Vec::new(),
         };
         let mut fits = self.refine_best(&evidence, &estimate, &hypotheses)?.into_iter();
-        let fit = fits.next().ok_or(Error::Mismatch { part: "refined poses", found: 0, expected: 1 })?;
+        let fit =
+            fits.next().ok_or(Error::Mismatch { part: "refined poses", found: 0, expected: 1 })?;
         let refined = self.refined_estimate(estimate.clone(), &fit)?;
         Ok(RefinedEstimate { estimate, refined, fit, others: fits.collect() })
     }

@@ -2,7 +2,8 @@
 
 use anyhow::{Context, Result};
 use phalanx::{
-    Estimate, Estimator, Framing, Observation, Preset, Progress, Refiner, Shard, Training, Workspace,
+    Estimate, Estimator, Framing, Observation, Preset, Progress, Refiner, Shard, Training,
+    Workspace,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};

@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use phalanx::{
-    Description, Error, Estimator, LearntMetric, NominalScenes, Preset, Regression, Regressor,
-    Shard, Silent, Training,
+    Description, Estimator, LearntMetric, NominalScenes, Preset, Regression, Regressor, Shard,
+    Silent, Training,
 };
 use phalanx_hand::HandShape;
 
@@ -69,5 +69,5 @@ fn a_part_is_saved_and_loaded_and_finishes_to_the_same() {
 fn what_keeps_its_samples_learns_from_residuals_too() {
     let training = Training { description: Description::Residuals, ..Training::default() };
     let learnt = training.run(&top(), &HandShape::adult(), &poses(), &Silent).unwrap();
-    roads::estimates_what_it_has_not_seen(&learnt);
+    roads::generalises(&learnt);
 }

@@ -201,7 +201,9 @@ fn a_regressor_that_overflows_is_named() {
     match estimate(&wild.unwrap(), &masks(&top(), &unseen()[0])) {
         Err(Error::Overflow { dof, .. }) => assert_eq!(dof, "thumb.abduction"),
         Err(other) => panic!("{other}"),
-        Ok(found) => assert!(found.pose.0.iter().chain(found.std.iter().flatten()).all(|v| v.is_finite())),
+        Ok(found) => {
+            assert!(found.pose.0.iter().chain(found.std.iter().flatten()).all(|v| v.is_finite()))
+        }
     }
 }
 
