@@ -208,16 +208,8 @@ pub(crate) fn finish(part: Part, hypotheses: bool, progress: &dyn Progress) -> R
 /// The fast preset through windows, knowing how it errs, as `--preset fast --framing window --hypotheses`
 /// learns it.
 pub(crate) fn fast_through_windows(rig: &Rig, hand: &HandShape) -> Result<Estimator> {
-    let (framing, preset) = (Framing::Window, Preset::Fast);
-    let set = sets::for_preset(framing, rig, hand, preset.scenes());
-    let training = Training { framing, ..preset.training() };
-    let bar = progress::Bar::new();
-    let part = training.shard(rig, hand, &set, Shard::WHOLE, &bar)?;
-    let left_out = part.left_out();
-    let estimator = part.finish(&bar)?;
-    drop(bar);
-    say_left_out(left_out, set.count());
-    with_hypotheses(estimator)
+    let trainer = Trainer::preset(Preset::Fast).framing(Framing::Window);
+    Ok(trainer.fit(rig, hand, &progress::Bar::new())?)
 }
 
 /// Writes a model and says what it is.

@@ -40,7 +40,7 @@ impl Progress for Bar {
     fn lost(&self, losses: &Losses, scenes: usize) {
         let bar = self.0.lock().expect("no holder of the lock panics");
         bar.suspend(|| {
-            eprintln!("{} of {scenes} scenes could not be used: {losses}", losses.count())
+            eprintln!("{} of {scenes} scenes could not be used: {losses}", losses.count());
         });
     }
 }

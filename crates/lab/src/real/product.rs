@@ -3,7 +3,9 @@
 
 use anyhow::Result;
 use image::{DynamicImage, GrayImage, RgbImage};
-use phalanx::{Estimate, Estimator, Picture, Progress, Refiner, Segmenter, Workspace};
+use phalanx::{
+    Estimate, Estimator, Picture, Progress, RefinedEstimate, Refiner, Segmenter, Workspace,
+};
 use phalanx_camera::{Rig, Volume};
 use phalanx_hand::HandShape;
 use phalanx_refine::{Doubt, Refined, Refinement};
@@ -66,18 +68,14 @@ impl Product {
         })
     }
 
-    fn refine(&self, estimate: &Estimate, workspace: &Workspace) -> Result<Found> {
-        let evidence = self.refiner.evidence_of(workspace)?;
-        let hypotheses = match self.estimator.errors() {
-            Some(_) => self.estimator.hypotheses(estimate, self.refiner.starts())?,
-            None => Vec::new(),
-        };
-        let refined = self.refiner.refine_best(&evidence, estimate, &hypotheses)?.swap_remove(0);
+    fn refine(&self, estimate: Estimate) -> Result<Found> {
+        let RefinedEstimate { estimate, fit, .. } =
+            self.refiner.refine_estimate(&self.estimator, estimate)?;
         let prior = self.refiner.prior(&estimate.pose, &estimate.std)?;
-        let covariance = PoseCovariance::new(prior.dofs(), &refined.covariance);
+        let covariance = PoseCovariance::new(prior.dofs(), &fit.covariance);
         let (hand, rest) = (self.refiner.hand(), self.refiner.rest());
-        let found = Found::posed(hand, &refined.pose, rest, Some(&covariance));
-        Ok(Found { doubts: [forearm_doubts(estimate), fit_doubts(&refined)].concat(), ..found })
+        let found = Found::posed(hand, &fit.pose, rest, Some(&covariance));
+        Ok(Found { doubts: [forearm_doubts(&estimate), fit_doubts(&fit)].concat(), ..found })
     }
 }
 
@@ -88,7 +86,7 @@ fn forearm_doubts(estimate: &Estimate) -> Vec<String> {
         Evidence::Border if forearm.crossings > 1 => Some("more than one forearm".to_owned()),
         Evidence::Border => None,
     };
-    estimate.forearms.iter().filter_map(doubt).collect()
+    estimate.observation.forearms().filter_map(doubt).collect()
 }
 
 /// What `phalanx estimate --refine` says of a fit.
@@ -112,7 +110,8 @@ impl Method for Estimated<'_> {
         let rest = estimator.rig().volume.rest_frame();
         each_frame(sequence, progress, Workspace::default, |workspace, pictures| {
             let estimate = self.0.estimate(sequence.input, pictures, workspace)?;
-            let covariance = PoseCovariance::independent(&estimate.std);
+            let covariance =
+                PoseCovariance::independent(&estimate.std.map(Option::unwrap_or_default));
             let found = Found::posed(estimator.hand(), &estimate.pose, &rest, Some(&covariance));
             Ok(Found { doubts: forearm_doubts(&estimate), ..found })
         })
@@ -130,7 +129,7 @@ impl Method for RefinedFrames<'_> {
     fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>> {
         each_frame(sequence, progress, Workspace::default, |workspace, pictures| {
             let estimate = self.0.estimate(sequence.input, pictures, workspace)?;
-            self.0.refine(&estimate, workspace)
+            self.0.refine(estimate)
         })
     }
 }
