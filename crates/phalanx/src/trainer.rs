@@ -47,11 +47,16 @@ impl Trainer {
 
     /// As a preset says: whole pictures, random poses with every [`Damage`], an error model.
     pub fn preset(preset: Preset) -> Self {
+        Self::new(preset.training(), preset.scenes())
+    }
+
+    /// By a recipe of one's own, from so many random scenes.
+    pub fn new(training: Training, samples: usize) -> Self {
         Self {
-            training: preset.training(),
+            training,
             poses: None,
             damage: Damage::default(),
-            samples: preset.scenes(),
+            samples,
             error_samples: Self::ERROR_SAMPLES,
             seed: 0,
         }

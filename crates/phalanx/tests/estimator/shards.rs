@@ -1,7 +1,7 @@
 //! Training in shards: the same bytes however it is cut, and clear refusals.
 
 use phalanx::{
-    Damage, Error, LossReason, OrientationRule, Part, Preset, Regressor, Scene, Scenes, Shard,
+    Damage, Error, LossReason, OrientationRule, Part, Regressor, Scene, SceneSubset, Scenes, Shard,
     Silent, Trainer, Training,
 };
 use phalanx_camera::Rig;
@@ -134,36 +134,30 @@ fn what_keeps_its_samples_learns_in_shards_too() {
     assert_eq!(merged.finish(&Silent).unwrap(), shard(1, 1).finish(&Silent).unwrap());
 }
 
-/// Recorded motion whose poses come in cycles: of every second pose the same turn is seen.
+/// Motion in cycles: every second pose is turned.
+struct Cycles(Random);
+
+impl Scenes for Cycles {
+    fn count(&self) -> usize {
+        self.0.count
+    }
+
+    fn scene(&self, number: usize) -> Scene {
+        let mut scene = self.0.scene(number);
+        scene.pose[Dof::ThetaZ] = [0.0, 0.6][number % 2];
+        scene
+    }
+}
+
 #[test]
-fn samples_of_a_periodic_motion_are_as_good_as_those_of_any_other() {
-    struct Cycles(Random);
-    impl Scenes for Cycles {
-        fn count(&self) -> usize {
-            self.0.count
-        }
-        fn scene(&self, number: usize) -> Scene {
-            let mut scene = self.0.scene(number / 2);
-            scene.pose[Dof::ThetaZ] = [0.0, 0.6][number % 2];
-            scene
-        }
-    }
-    let nystrom = Regressor::Nystrom(Nystrom::default());
-    let learn = |count: usize| {
-        let scenes = Cycles(Random::new(count));
-        let quick = desk::training(OrientationRule::default());
-        let training = Training { regressor: nystrom.clone(), ..quick };
-        let Random { rig, hand, .. } = &scenes.0;
-        training.shard(rig, hand, &scenes, Shard::WHOLE, &Silent).unwrap().finish(&Silent).unwrap()
-    };
-    // Twice as many as there are candidates: every second one of them would be the same turn.
-    let learnt = learn(2 * Regressor::CANDIDATES);
-    let mut pose = desk::unseen()[2];
-    for turn in [0.0, 0.6] {
-        pose[Dof::ThetaZ] = turn;
-        let found = desk::estimate(&learnt, &desk::masks(&top(), &pose)).unwrap().pose;
-        assert!((found[Dof::ThetaZ] - turn).abs() < 0.2, "{} for {turn}", found[Dof::ThetaZ]);
-    }
+fn a_subset_sees_every_phase_of_a_periodic_motion() {
+    let cycles = Cycles(Random::new(4000));
+    let subset = SceneSubset::new(&cycles, 1000);
+    let turned = |number: &usize| subset.scene(*number).pose[Dof::ThetaZ] > 0.0;
+    let turned = (0..subset.count()).filter(turned).count();
+    assert_eq!(subset.count(), 1000);
+    // Binomial: the standard deviation is 16.
+    assert!((420..580).contains(&turned), "{turned}");
 }
 
 #[test]
@@ -184,9 +178,10 @@ fn a_damaged_part_is_refused() {
 }
 
 #[test]
-fn shards_of_a_preset_are_one_run_with_its_error_model() {
+fn shards_of_a_trainer_are_one_run_with_its_error_model() {
     let (rig, hand) = (top(), HandShape::adult());
-    let trainer = Trainer::preset(Preset::Fast).samples(1100).error_samples(60);
+    let quick = Training { regressor: linear(), ..desk::training(OrientationRule::default()) };
+    let trainer = Trainer::new(quick, 1100).error_samples(60);
     let shard = |index, count| {
         let shard = Shard::new(index, count).unwrap();
         trainer.fit_shard(&rig, &hand, shard, &Silent).unwrap()
