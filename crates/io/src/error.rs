@@ -10,6 +10,44 @@ pub enum Error {
     /// A camera contradicts itself.
     #[error(transparent)]
     Camera(#[from] phalanx_camera::Error),
+    /// A calibration that cannot be read.
+    #[error("calibration: {what}")]
+    Calibration {
+        /// What is wrong, and where.
+        what: String,
+    },
+    /// A field of a camera in a calibration that is absent or cannot be right.
+    #[error("camera `{camera}`: {field} {what}")]
+    CalibrationField {
+        /// The camera.
+        camera: String,
+        /// The field, as the file calls it.
+        field: String,
+        /// What is wrong.
+        what: String,
+    },
+    /// A calibration that does not say its unit.
+    #[error(
+        "calibration: it does not say what a length of 1 is{hint}: give the unit, mm, m or the \
+         millimetres of one unit, such as a chessboard's square"
+    )]
+    CalibrationUnit {
+        /// What the unit is likely to be, in brackets.
+        hint: &'static str,
+    },
+    /// Two cameras nearer to each other, or farther apart, than those of any hand's rig.
+    #[error(
+        "cameras `{first}` and `{second}` are {mm:.1} mm apart, where 20 mm to 20 m are believed: is the \
+         unit right?"
+    )]
+    CalibrationDistance {
+        /// One camera.
+        first: String,
+        /// The other.
+        second: String,
+        /// Between them, mm.
+        mm: f64,
+    },
     /// A take's header that is none, of another version, or contradicts itself.
     #[error("take: header: {what}")]
     TakeHeader {
@@ -96,4 +134,20 @@ pub enum Error {
         /// The name that was met.
         name: String,
     },
+}
+
+impl Error {
+    /// A calibration that cannot be read.
+    pub(crate) fn calibration(what: impl Into<String>) -> Self {
+        Self::Calibration { what: what.into() }
+    }
+
+    /// A field that cannot be right.
+    pub(crate) fn field(camera: &str, field: &str, what: impl Into<String>) -> Self {
+        Self::CalibrationField {
+            camera: camera.to_owned(),
+            field: field.to_owned(),
+            what: what.into(),
+        }
+    }
 }
