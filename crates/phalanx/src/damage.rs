@@ -136,7 +136,7 @@ fn about(point: DVec3, direction: DVec3, angle: f64) -> DAffine3 {
 }
 
 /// The least or the greatest of the 3×3 pixels around each, fewer at the picture's border.
-fn around(pixels: &[u8], width: usize, pick: fn(u8, u8) -> u8) -> Vec<u8> {
+fn around(pixels: &[u8], width: usize, pick: impl Fn(u8, u8) -> u8) -> Vec<u8> {
     let mut across = pixels.to_vec();
     for (row, out) in pixels.chunks_exact(width).zip(across.chunks_exact_mut(width)) {
         out[1..].iter_mut().zip(row).for_each(|(out, before)| *out = pick(*out, *before));

@@ -9,9 +9,10 @@ use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
 use crate::damage::make_ragged;
+use crate::scene::View;
+use crate::window::{DrawnView, DrawnWindows};
 use crate::{
-    Describer, Error, Framing, Picture, Progress, Result, Scene, Scenes, Sight, WindowFinder,
-    working_camera,
+    Describer, Error, Framing, Picture, Progress, Result, Scene, Scenes, Sight, working_camera,
 };
 
 /// The shape contexts of one pose: for each camera, its contour points' histograms one after the
@@ -43,7 +44,7 @@ pub fn describe_each(
 /// [`WORKING_SIZE`](crate::WORKING_SIZE).
 ///
 /// # Errors
-/// A hand that reaches behind the camera.
+/// A camera that cannot draw.
 pub fn draw_silhouette(
     camera: &Camera,
     hand: &HandShape,
@@ -65,13 +66,12 @@ pub struct SceneDescriber {
     renderers: Vec<Renderer>,
     drawn: Vec<GrayImage>,
     describer: Describer,
-    windows: WindowFinder,
+    windows: DrawnWindows,
     silhouettes: Vec<Silhouette>,
 }
 
 impl SceneDescriber {
-    /// For the cameras of a rig: drawn at [`WORKING_SIZE`](crate::WORKING_SIZE) where whole pictures
-    /// are described, and as large as they are where windows are.
+    /// For the cameras of a rig.
     ///
     /// # Errors
     /// A camera that cannot draw.
@@ -91,7 +91,10 @@ impl SceneDescriber {
             renderers: cameras.iter().map(renderer).collect::<Result<_>>()?,
             drawn: vec![GrayImage::default(); cameras.len()],
             describer: Describer::default(),
-            windows: WindowFinder::default(),
+            windows: match sight.framing {
+                Framing::Picture => DrawnWindows::default(),
+                Framing::Window => DrawnWindows::new(&cameras)?,
+            },
             silhouettes: vec![Silhouette::default(); cameras.len()],
             cameras,
         })
@@ -132,19 +135,20 @@ impl SceneDescriber {
         self.silhouettes.iter()
     }
 
-    /// The scene's masks, as large as they are drawn: damaged, and not cleaned.
+    /// The scene's masks, damaged and not cleaned: at [`WORKING_SIZE`](crate::WORKING_SIZE) where whole
+    /// pictures are described, and as large as the cameras' pictures where windows are.
     ///
     /// # Errors
-    /// Another number of views than cameras, or a hand that reaches behind one.
+    /// Another number of views than cameras.
     pub fn masks(&mut self, scene: &Scene) -> Result<&[GrayImage]> {
         self.draw(scene)?;
         Ok(&self.drawn)
     }
 
     pub(crate) fn see(&mut self, scene: &Scene) -> Result<()> {
-        self.draw(scene)?;
         match self.sight.framing {
             Framing::Picture => {
+                self.draw(scene)?;
                 let views = self.cameras.iter().zip(&self.drawn).zip(&mut self.silhouettes);
                 for ((camera, drawn), silhouette) in views {
                     let seen = self.describer.silhouette(Picture::Mask(drawn), silhouette);
@@ -155,19 +159,29 @@ impl SceneDescriber {
                 }
             }
             Framing::Window => {
-                let windows = self.windows.find(&self.cameras, &self.drawn, None)?;
-                self.windows.silhouettes(&windows, &mut self.silhouettes)?;
+                self.check(scene)?;
+                let drawn = |view: &View| DrawnView {
+                    solids: scene.hand.pose(&scene.pose, &view.rest).primitives,
+                    ragged: view.ragged,
+                };
+                let views: Vec<DrawnView> = scene.views.iter().map(drawn).collect();
+                self.windows.silhouettes(&views, &mut self.silhouettes)?;
             }
+        }
+        Ok(())
+    }
+
+    fn check(&self, scene: &Scene) -> Result<()> {
+        let (found, expected) = (scene.views.len(), self.cameras.len());
+        if found != expected {
+            return Err(Error::Mismatch { part: "views of the scene", found, expected });
         }
         Ok(())
     }
 
     /// Draws the scene in every camera, ragged where it is.
     fn draw(&mut self, scene: &Scene) -> Result<()> {
-        let (found, expected) = (scene.views.len(), self.cameras.len());
-        if found != expected {
-            return Err(Error::Mismatch { part: "views of the scene", found, expected });
-        }
+        self.check(scene)?;
         let renderers = self.renderers.iter_mut().zip(&self.cameras).zip(&mut self.drawn);
         for (((renderer, camera), drawn), view) in renderers.zip(&scene.views) {
             let solids = scene.hand.pose(&scene.pose, &view.rest).primitives;

@@ -20,14 +20,15 @@ impl Majority {
             self.count(&pixels[rows.start * width..rows.end * width], width, radius);
             let here = &pixels[y * width..][..width];
             let out = &mut out[y * width..][..width];
-            for (x, ((out, &level), &votes)) in
-                out.iter_mut().zip(here).zip(&self.votes).enumerate()
-            {
+            // All windows between the ends are equally wide.
+            let ends = [radius.min(width), width.saturating_sub(radius).max(radius.min(width))];
+            let each = (0..ends[0]).chain(ends[1]..width).map(|x| x..x + 1);
+            for columns in each.chain([ends[0]..ends[1]]).filter(|columns| !columns.is_empty()) {
+                let x = columns.start;
                 let voters_across = (x + radius + 1).min(width) - x.saturating_sub(radius);
                 let voters = (voters_down * voters_across) as u16;
-                // Twice the votes, plus one if the pixel itself breaks a draw.
-                let votes = 2 * u16::from(votes) + u16::from(level > 127);
-                *out = if votes > voters { 255 } else { 0 };
+                let votes = &self.votes[columns.clone()];
+                settle(&here[columns.clone()], votes, voters, &mut out[columns]);
             }
         }
     }
@@ -47,5 +48,14 @@ impl Majority {
                 *sum += column;
             }
         }
+    }
+}
+
+/// Decides on pixels around which equally many vote.
+fn settle(pixels: &[u8], votes: &[u8], voters: u16, out: &mut [u8]) {
+    for ((out, &level), &votes) in out.iter_mut().zip(pixels).zip(votes) {
+        // Twice the votes, plus one if the pixel itself breaks a draw.
+        let votes = 2 * u16::from(votes) + u16::from(level > 127);
+        *out = if votes > voters { 255 } else { 0 };
     }
 }

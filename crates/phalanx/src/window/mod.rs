@@ -1,6 +1,7 @@
 //! The hand seen through a virtual camera that is turned and zoomed onto it.
 
 mod choice;
+mod drawn;
 mod finder;
 mod layout;
 mod resample;
@@ -14,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Result;
 
+pub(crate) use drawn::{DrawnView, DrawnWindows};
 pub use finder::WindowFinder;
 
 /// What of a camera's picture is described.

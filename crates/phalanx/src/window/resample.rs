@@ -56,6 +56,21 @@ pub(super) fn inside(to_picture: &PixelMap, picture: (u32, u32)) -> GrayImage {
     inside
 }
 
+/// Leaves nothing of a mask outside the picture, of this width and height, that its pixels are mapped to.
+pub(super) fn cut(mask: &mut GrayImage, to_picture: &PixelMap, picture: DVec2) {
+    let width = mask.width();
+    let mut row = Vec::with_capacity(width as usize);
+    for (y, line) in mask.chunks_exact_mut(width as usize).enumerate() {
+        positions(to_picture, y as f64 + 0.5, width, 1.0, &mut row);
+        for (pixel, at) in line.iter_mut().zip(&row) {
+            // A NaN is not inside.
+            if !(at.cmpge(DVec2::ZERO).all() && at.cmple(picture).all()) {
+                *pixel = 0;
+            }
+        }
+    }
+}
+
 /// Samples along a side of a pixel: as many as it covers of the mask's pixels.
 fn samples_aside(to_mask: &PixelMap) -> u32 {
     (pixels_aside(to_mask).ceil() as u32).clamp(1, MOST_SAMPLES)
