@@ -1,4 +1,5 @@
 //! The fitted regressor of an estimator.
+use phalanx_rvm::Regressor as _;
 use phalanx_rvm::{Model, NetworkOnComponents, Projected, Scratch};
 
 /// A fitted regressor from descriptors to poses.

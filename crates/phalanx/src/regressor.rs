@@ -91,7 +91,7 @@ impl LearntMetric {
         y: MatRef<'_, f64>,
         parts: &[usize],
     ) -> Result<Metric> {
-        Ok(self.metric.learn(x, y, &blocks(parts, self.components), &groups())?)
+        Ok(self.metric.fit(x, y, &blocks(parts, self.components), &groups())?)
     }
 }
 
@@ -192,7 +192,7 @@ impl Regressor {
             }
             Self::Network(fitter) => {
                 progress.begin("find principal components", 1);
-                let components = Components::of(x.as_ref(), &blocks(&parts, fitter.components))?;
+                let components = Components::fit(x.as_ref(), &blocks(&parts, fitter.components))?;
                 progress.step();
                 Reading::Components(components)
             }
@@ -212,8 +212,8 @@ impl Regressor {
             return Err(Error::Mismatch { part: "principal components", found: 0, expected: 1 });
         };
         progress.begin("train the network", fitter.perceptron.epochs);
-        let trained = fitter.perceptron.fit_observed(x, y, &mut |_| progress.step())?;
-        Ok(NetworkOnComponents::from_parts(components.clone(), trained.network)?.into())
+        let trained = fitter.perceptron.fit_single(x, y, &mut |_| progress.step())?;
+        Ok(NetworkOnComponents::from_parts(components.clone(), trained.model)?.into())
     }
 
     /// Fits targets `y`, m × I, to descriptors `x`, K × I; samples are columns. Of regressors with

@@ -4,7 +4,9 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use faer::Mat;
-use phalanx_rvm::{Bridges, ForwardSelection, Kernel, KernelRidge, Scratch, Stop, Tipping, Width};
+use phalanx_rvm::{
+    Bridges, ForwardSelection, Kernel, KernelRidge, Regressor, Scratch, Stop, Tipping, Width,
+};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 

@@ -4,7 +4,9 @@
 //!     cargo run --release -p phalanx-rvm --example sinc
 
 use phalanx_rvm::faer::Mat;
-use phalanx_rvm::{Bridges, Fit, ForwardSelection, Kernel, KernelRidge, Result, Tipping, Width};
+use phalanx_rvm::{
+    Bridges, Fit, ForwardSelection, Kernel, KernelRidge, Regressor, Result, Tipping, Width,
+};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 

@@ -180,3 +180,13 @@ pub enum Error {
         problem: &'static str,
     },
 }
+
+impl Error {
+    /// Names the sample in an error about one of its values.
+    pub(crate) fn at(self, column: usize) -> Self {
+        match self {
+            Self::BadValue { what, row, value, .. } => Self::BadValue { what, row, column, value },
+            other => other,
+        }
+    }
+}

@@ -146,7 +146,7 @@ fn by_distance(
     let learning = GradientMetric { regression, rounds: 1, centres: 400, gradients: 400, rank: 40 };
     let block = Block { inputs: x.nrows(), components: 60 };
     let all = vec![(0..y.nrows()).collect()];
-    let projection = learning.learn(x, y, &[block], &all)?.projection;
+    let projection = learning.fit(x, y, &[block], &all)?.projection;
     let inputs: Mat<f64> = projection.apply(x)?;
     let model = in_proportion(inputs.as_ref(), problem, width, fit)?;
     Ok(Made { projection: Some(projection), model })

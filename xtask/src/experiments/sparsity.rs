@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result};
 use phalanx_hand::{Digit, Dof};
+use phalanx_rvm::Regressor as _;
 use phalanx_rvm::{Bridges, Kernel, Model, Stop, Tipping};
 use rayon::prelude::*;
 use serde_json::json;

@@ -1,15 +1,13 @@
 //! What the columns of a regression are, fixed before its data stream by.
 
-use faer::{Mat, MatMut, MatRef};
-use rayon::prelude::*;
+use faer::{Mat, MatRef};
 
-use crate::basis::kernel;
-use crate::basis::kernel::{Kernel, Width};
+use crate::basis::gaussians::Gaussians;
+use crate::basis::kernel::{self, Kernel, Width};
 use crate::data::check;
 use crate::data::problem::Problem;
 use crate::data::scaler::Standardiser;
 use crate::error::{Error, Result};
-use crate::linalg;
 use crate::model::parts::Basis;
 
 /// Origins are multiples of this. They need only be near the columns' means, and coarse ones do
@@ -18,9 +16,6 @@ const ORIGIN_STEP: f64 = 1.0 / (1 << 20) as f64;
 /// Most standard deviations of the pilot that a sample may lie from its mean. Squares of such
 /// numbers over as many samples as may be summed stay within the sums' range.
 pub(crate) const FURTHEST: f64 = 65_536.0;
-/// Columns that one task computes.
-const BLOCK: usize = 96;
-
 /// Samples that are known before the others: what a stream's standardisation and its Gaussians'
 /// centres are taken from.
 #[derive(Debug, Clone, Copy)]
@@ -51,16 +46,6 @@ pub struct Columns {
     gaussians: Option<Gaussians>,
     /// What is subtracted from each column before it is summed: near its mean.
     origins: Vec<f64>,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-struct Gaussians {
-    /// |β|.
-    beta: f64,
-    /// Index of each centre in the training set.
-    samples: Vec<usize>,
-    /// Standardised centres, features×p.
-    centres: Mat<f64>,
 }
 
 impl Columns {
@@ -179,7 +164,7 @@ impl Columns {
 
     /// Gaussian kernel between all pairs of centres, p×p.
     pub(crate) fn between_centres(&self) -> Option<Mat<f64>> {
-        self.gaussians.as_ref().map(|g| kernel::gaussian(g.centres.as_ref(), g.beta))
+        self.gaussians.as_ref().map(Gaussians::between_centres)
     }
 
     /// Refuses a kernel other than the one that these columns were made for.
@@ -254,27 +239,6 @@ impl Columns {
             gaussians.evaluate(z.as_ref(), &self.origins, out.as_mut().subcols_mut(0, p));
         }
         out
-    }
-}
-
-impl Gaussians {
-    /// exp(−β‖z − c‖²) less the origins, for each sample of `z` (features×n) and centre c, into
-    /// `out`, n×p.
-    fn evaluate(&self, z: MatRef<'_, f64>, origins: &[f64], out: MatMut<'_, f64>) {
-        let norms: Vec<f64> = z.col_iter().map(|sample| sample.squared_norm_l2()).collect();
-        out.par_col_chunks_mut(BLOCK).enumerate().for_each(|(block, mut out)| {
-            let start = block * BLOCK;
-            let centres = self.centres.subcols(start, out.ncols());
-            let inner = linalg::product(z.transpose(), centres);
-            for (k, column) in out.as_mut().col_iter_mut().enumerate() {
-                let (norm, origin) = (centres.col(k).squared_norm_l2(), origins[start + k]);
-                let from = inner.col_as_slice(k).iter().zip(&norms);
-                for (value, (inner, sample)) in column.iter_mut().zip(from) {
-                    let squared = sample + norm - 2.0 * inner;
-                    *value = (-self.beta * squared.max(0.0)).exp() - origin;
-                }
-            }
-        });
     }
 }
 

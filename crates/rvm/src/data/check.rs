@@ -80,3 +80,15 @@ pub(crate) fn grid(grid: &[f64]) -> Result<()> {
     }
     grid.iter().try_for_each(|&lambda| positive("lambda", lambda))
 }
+
+/// Refuses a model whose parts have this `problem`, if it is `present`.
+pub(crate) fn part(field: &'static str, problem: &'static str, present: bool) -> Result<()> {
+    if present { Err(Error::Parts { field, problem }) } else { Ok(()) }
+}
+
+/// Refuses parts of another length than expected (`None`: one that overflows), and such as are not
+/// [`usable`].
+pub(crate) fn numbers(field: &'static str, values: &[f64], expected: Option<usize>) -> Result<()> {
+    part(field, "has the wrong length", Some(values.len()) != expected)?;
+    part(field, "holds an unusable number", !values.iter().all(|&v| usable(v)))
+}

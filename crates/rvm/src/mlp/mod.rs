@@ -19,7 +19,7 @@ use crate::mlp::adam::Adam;
 use crate::mlp::layers::{Layers, LeftOut, Pass};
 use crate::mlp::network::{Network, NetworkParts};
 use crate::mlp::samples::{Samples, Scaling, check_inputs};
-use crate::model::report::{Report, Trace};
+use crate::model::report::{Fit, Report, Trace};
 use crate::transform::affine_map::Projection;
 
 /// A multilayer perceptron: layers of x ↦ s(Wx + b), s(z) = z/(1 + e⁻ᶻ) (Elfwing, Uchibe and Doya
@@ -37,13 +37,13 @@ use crate::transform::affine_map::Projection;
 /// For targets that depend on many inputs at once, and samples that go into the tens of thousands.
 ///
 /// ```
-/// use phalanx_rvm::{Perceptron, faer::Mat};
+/// use phalanx_rvm::{Perceptron, Regressor, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
-/// let x = Mat::from_fn(2, 2000, |i, t| ((t * (7 + 6 * i)) as f32 * 0.0618).fract() - 0.5);
-/// let y = Mat::from_fn(1, 2000, |_, t| f64::from(x[(0, t)] * x[(1, t)]));
+/// let x = Mat::from_fn(2, 2000, |i, t| ((t * (7 + 6 * i)) as f64 * 0.0618).fract() - 0.5);
+/// let y = Mat::from_fn(1, 2000, |_, t| x[(0, t)] * x[(1, t)]);
 /// let fitter = Perceptron { hidden: vec![32, 32], dropout: 0.0, ..Perceptron::default() };
-/// let network = fitter.fit(x.as_ref(), y.as_ref())?.network;
+/// let network = fitter.fit(x.as_ref(), y.as_ref())?.model;
 ///
 /// let (mut mean, mut std) = ([0.0], [0.0]);
 /// network.predict_into(&[0.3, -0.4], &mut Default::default(), &mut mean, &mut std)?;
@@ -69,15 +69,6 @@ pub struct Perceptron {
     pub seed: u64,
 }
 
-/// A fitted network and how the fitting went.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FittedNetwork {
-    /// The network.
-    pub network: Network,
-    /// How the fitting went.
-    pub report: Report,
-}
-
 impl Default for Perceptron {
     fn default() -> Self {
         let hidden = vec![512; 3];
@@ -87,18 +78,22 @@ impl Default for Perceptron {
 
 impl Perceptron {
     /// Fits X (K×I) to Y (m×I).
-    pub fn fit(&self, x: MatRef<'_, f32>, y: MatRef<'_, f64>) -> Result<FittedNetwork> {
-        self.fit_observed(x, y, &mut |_| ())
+    pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit<Network>> {
+        check::matrix("x", x)?;
+        let single = Mat::from_fn(x.nrows(), x.ncols(), |i, t| x[(i, t)] as f32);
+        self.fit_single(single.as_ref(), y, &mut |_| ())
     }
 
-    /// Fits X (K×I) to Y (m×I); `observe` is told the number of epochs done after each.
-    pub fn fit_observed(
+    /// Fits as [`fit`](Self::fit) does, from inputs in single precision, which is what the network
+    /// computes in: tens of thousands of samples need no copy. `observe` is told the number of epochs
+    /// done after each.
+    pub fn fit_single(
         &self,
         x: MatRef<'_, f32>,
         y: MatRef<'_, f64>,
         observe: &mut dyn FnMut(usize),
-    ) -> Result<FittedNetwork> {
-        self.check_settings()?;
+    ) -> Result<Fit<Network>> {
+        self.check()?;
         check_inputs(x)?;
         let targets = Standardiser::fit(y)?;
         check::length("columns (samples) of y", x.ncols(), y.ncols())?;
@@ -120,10 +115,11 @@ impl Perceptron {
             std: samples.deviations(&layers, &targets),
         })?;
         let trace = Trace { converged: true, objective: errors };
-        Ok(FittedNetwork { network, report: Report::new(vec![trace], None) })
+        Ok(Fit { model: network, report: Report::new(vec![trace], None) })
     }
 
-    fn check_settings(&self) -> Result<()> {
+    /// Refuses settings out of range, before there are data. There is no limit on their number.
+    pub fn check(&self) -> Result<()> {
         check::positive("rate", self.rate)?;
         for (name, count) in [("epochs", self.epochs), ("batch", self.batch)] {
             if count == 0 {

@@ -4,7 +4,8 @@ use crate::data::check;
 use crate::data::scaler::Standardiser;
 use crate::error::{Error, Result};
 use crate::model::parts::known;
-use crate::model::predict::Scratch;
+use crate::model::regressor::Regressor;
+use crate::model::scratch::Scratch;
 use crate::transform::affine_map::Projection;
 
 /// A fitted [`Perceptron`](crate::Perceptron): affine maps with z/(1 + e⁻ᶻ) between them, and a
@@ -53,20 +54,18 @@ impl Network {
     pub fn parts(&self) -> &NetworkParts {
         &self.parts
     }
+}
 
-    /// Length K of an input.
-    pub fn inputs(&self) -> usize {
+impl Regressor for Network {
+    fn inputs(&self) -> usize {
         self.parts.layers[0].inputs()
     }
 
-    /// Number m of targets.
-    pub fn outputs(&self) -> usize {
+    fn outputs(&self) -> usize {
         self.parts.std.len()
     }
 
-    /// Mean and standard deviation of the m targets of one input `x` (length K), all finite. The
-    /// deviation is infinite where the samples do not tell it.
-    pub fn predict_into(
+    fn predict_into(
         &self,
         x: &[f64],
         scratch: &mut Scratch,

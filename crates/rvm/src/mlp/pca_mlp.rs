@@ -3,7 +3,8 @@
 use crate::data::check;
 use crate::error::{Error, Result};
 use crate::mlp::network::Network;
-use crate::model::predict::Scratch;
+use crate::model::regressor::Regressor;
+use crate::model::scratch::Scratch;
 use crate::transform::block_pca::Components;
 
 /// A network and the principal components of the inputs, which it reads.
@@ -38,19 +39,18 @@ impl NetworkOnComponents {
     pub fn network(&self) -> &Network {
         &self.parts.network
     }
+}
 
-    /// Length K of an input.
-    pub fn inputs(&self) -> usize {
+impl Regressor for NetworkOnComponents {
+    fn inputs(&self) -> usize {
         self.components().inputs()
     }
 
-    /// Number m of targets.
-    pub fn outputs(&self) -> usize {
+    fn outputs(&self) -> usize {
         self.network().outputs()
     }
 
-    /// Mean and standard deviation of the m targets of one input `x` (length K), all finite.
-    pub fn predict_into(
+    fn predict_into(
         &self,
         x: &[f64],
         scratch: &mut Scratch,

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::model::parts::Basis;
+use crate::model::regressor::Regressor;
 
 impl Model {
     /// The model's mean prediction as Rust source: a module with `INPUTS`, `OUTPUTS`, the `NOISE`
@@ -140,9 +141,9 @@ struct Table {
 
 /// The shortest decimals that are read back as these numbers.
 fn numbers(values: &[f64]) -> Vec<String> {
-    let literal = |value: &f64| match value.is_finite() {
-        true => format!("{value:e}"),
-        false => "f64::INFINITY".to_owned(), // a noise that is not known; C has no table of it
+    // Only the noise can be infinite, of which C has no table.
+    let literal = |value: &f64| {
+        if value.is_finite() { format!("{value:e}") } else { "f64::INFINITY".to_owned() }
     };
     values.iter().map(literal).collect()
 }

@@ -5,6 +5,7 @@ use faer::{ColRef, Mat};
 use crate::linalg;
 use crate::model::Model;
 use crate::model::parts::Basis;
+use crate::model::regressor::Regressor;
 
 impl Model {
     /// The derivatives of the predicted targets by the inputs, m×K in the units of both, at one

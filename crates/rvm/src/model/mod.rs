@@ -1,10 +1,13 @@
 //! The fitted regressor: one type, whichever way it was fitted.
 
+pub(crate) mod cholesky_factor;
 mod codegen;
 mod gradient;
 pub(crate) mod parts;
-pub(crate) mod predict;
+mod predict;
+pub(crate) mod regressor;
 pub(crate) mod report;
+pub(crate) mod scratch;
 
 use faer::MatRef;
 
@@ -65,16 +68,6 @@ impl Model {
     pub(crate) fn trusted(parts: ModelParts) -> Self {
         debug_assert_eq!(parts.check(), Ok(()));
         Self { parts }
-    }
-
-    /// Length K of an input vector.
-    pub fn inputs(&self) -> usize {
-        self.parts.inputs
-    }
-
-    /// Length m of a target vector.
-    pub fn outputs(&self) -> usize {
-        self.parts.outputs
     }
 
     /// Indices of the inputs that the model reads, ascending. The others may hold anything.

@@ -1,7 +1,8 @@
 //! The plain numbers of a model, and the check that they fit together.
 
-use crate::data::check;
-use crate::error::{Error, Result};
+use crate::data::check::{numbers, part};
+use crate::error::Result;
+use crate::model::cholesky_factor::Factor;
 
 /// Everything that a [`Model`](crate::Model) is made of, in plain vectors.
 ///
@@ -70,16 +71,6 @@ pub enum Posterior {
     },
 }
 
-/// A lower triangular matrix M over some of a model's columns.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Factor {
-    /// Columns of the model that M applies to.
-    pub columns: Vec<usize>,
-    /// M's columns from the diagonal down, one after the other: n(n+1)/2 numbers.
-    pub packed: Vec<f64>,
-}
-
 impl ModelParts {
     /// The noise as predictions take it: infinite where the samples do not tell it.
     pub(crate) fn known_noise(&self) -> impl Iterator<Item = f64> + '_ {
@@ -98,21 +89,21 @@ impl ModelParts {
     pub(crate) fn check(&self) -> Result<()> {
         let (read, p, m) = (self.features.len(), self.size(), self.outputs);
         let ascending = self.features.is_sorted_by(|a, b| a < b);
-        fault("features", "must be ascending", !ascending)?;
+        part("features", "must be ascending", !ascending)?;
         let beyond = self.features.last().is_some_and(|&last| last >= self.inputs);
-        fault("features", "names an input that is not there", beyond)?;
-        fault("outputs", "must be at least 1", m == 0)?;
+        part("features", "names an input that is not there", beyond)?;
+        part("outputs", "must be at least 1", m == 0)?;
         numbers("feature_means", &self.feature_means, Some(read))?;
         numbers("feature_scales", &self.feature_scales, Some(read))?;
         let flat = self.feature_scales.iter().any(|&s| s <= 0.0);
-        fault("feature_scales", "must be above 0", flat)?;
+        part("feature_scales", "must be above 0", flat)?;
         numbers("column_means", &self.column_means, Some(p))?;
         numbers("weights", &self.weights, m.checked_mul(p))?;
         numbers("bias", &self.bias, Some(m))?;
         numbers("noise", &self.noise, Some(m))?;
-        fault("noise", "must not be negative", self.noise.iter().any(|&s| s < 0.0))?;
+        part("noise", "must not be negative", self.noise.iter().any(|&s| s < 0.0))?;
         if let Basis::Gaussian { beta, centres, .. } = &self.basis {
-            fault("beta", "must be above 0 and finite", !(*beta > 0.0 && beta.is_finite()))?;
+            part("beta", "must be above 0 and finite", !(*beta > 0.0 && beta.is_finite()))?;
             numbers("centres", centres, read.checked_mul(p))?;
         }
         self.check_posterior(p, m)
@@ -122,32 +113,19 @@ impl ModelParts {
         match &self.posterior {
             Posterior::Weights(factors) => {
                 let count = factors.len();
-                fault("posterior", "needs one factor or one per output", count != 1 && count != m)?;
+                part("posterior", "needs one factor or one per output", count != 1 && count != m)?;
                 factors.iter().try_for_each(|factor| factor.check(p))
             }
             Posterior::Process { factor, lambda } => {
                 let bad = !(*lambda > 0.0 && lambda.is_finite());
-                fault("lambda", "must be above 0 and finite", bad)?;
+                part("lambda", "must be above 0 and finite", bad)?;
                 let linear = matches!(self.basis, Basis::Linear);
-                fault("posterior", "is a process, which needs Gaussian columns", linear)?;
-                fault("posterior", "must cover all columns", factor.columns.len() != p)?;
-                fault("posterior", "has no samples", p == 0)?;
+                part("posterior", "is a process, which needs Gaussian columns", linear)?;
+                part("posterior", "must cover all columns", factor.columns.len() != p)?;
+                part("posterior", "has no samples", p == 0)?;
                 factor.check(p)
             }
         }
-    }
-}
-
-impl Factor {
-    fn check(&self, p: usize) -> Result<()> {
-        let n = self.columns.len();
-        fault("posterior", "repeats a column", n > p)?;
-        fault(
-            "posterior",
-            "names a column that is not there",
-            self.columns.iter().any(|&c| c >= p),
-        )?;
-        numbers("posterior", &self.packed, n.checked_mul(n + 1).map(|twice| twice / 2))
     }
 }
 
@@ -155,13 +133,4 @@ impl Factor {
 /// of how far others may lie.
 pub(crate) fn known(deviation: f64) -> f64 {
     if deviation > 0.0 { deviation } else { f64::INFINITY }
-}
-
-fn fault(field: &'static str, problem: &'static str, present: bool) -> Result<()> {
-    if present { Err(Error::Parts { field, problem }) } else { Ok(()) }
-}
-
-fn numbers(field: &'static str, values: &[f64], expected: Option<usize>) -> Result<()> {
-    fault(field, "has the wrong length", Some(values.len()) != expected)?;
-    fault(field, "holds an unusable number", !values.iter().all(|&v| check::usable(v)))
 }

@@ -7,40 +7,48 @@ use crate::data::check;
 use crate::error::{Error, Result};
 use crate::linalg::axpy;
 use crate::model::Model;
-use crate::model::parts::{Basis, Factor, Posterior};
+use crate::model::cholesky_factor::Factor;
+use crate::model::parts::{Basis, Posterior};
+use crate::model::regressor::Regressor;
+use crate::model::scratch::Scratch;
 
 /// Centres whose distances grow together.
 const LANES: usize = 8;
 /// Samples that one task predicts.
 const BLOCK: usize = 64;
 
-/// Working memory of single predictions: made once with `default()`, grown at first use.
-#[derive(Debug, Clone, Default)]
-pub struct Scratch {
-    /// Standardised features.
-    z: Vec<f64>,
-    /// Centred basis columns.
-    phi: Vec<f64>,
-    /// The posterior's columns, and M times them.
-    chosen: Vec<f64>,
-    spread: Vec<f64>,
-    /// A projection's input in single precision, and its output.
-    pub(crate) single: Vec<f32>,
-    pub(crate) projected: Vec<f64>,
-    /// Principal components, and what goes into a network's next layer.
-    pub(crate) components: Vec<f64>,
-    pub(crate) hidden: Vec<f64>,
-}
-
-impl Scratch {
-    /// The last prediction's standardised features.
-    pub(crate) fn features(&self) -> &[f64] {
-        &self.z
+impl Regressor for Model {
+    fn inputs(&self) -> usize {
+        self.parts.inputs
     }
 
-    /// The last prediction's centred basis columns.
-    pub(crate) fn columns(&self) -> &[f64] {
-        &self.phi
+    fn outputs(&self) -> usize {
+        self.parts.outputs
+    }
+
+    /// The variance is that of the noise plus that of the function, φᵀΣφ.
+    fn predict_into(
+        &self,
+        x: &[f64],
+        scratch: &mut Scratch,
+        mean: &mut [f64],
+        std: &mut [f64],
+    ) -> Result<()> {
+        check::length("standard deviations", self.outputs(), std.len())?;
+        self.predict_mean_into(x, scratch, mean)?;
+        self.deviations(scratch, std);
+        Ok(())
+    }
+
+    /// In parallel.
+    fn predict_with_std(&self, x: MatRef<'_, f64>) -> Result<(Mat<f64>, Mat<f64>)> {
+        let m = self.outputs();
+        let both = self.for_each_sample(x, 2 * m, |model, x, scratch, out| {
+            let (mean, std) = out.split_at_mut(m);
+            model.predict_into(x, scratch, mean, std)
+        })?;
+        let part = |offset| Mat::from_fn(m, x.ncols(), |j, t| both[t * 2 * m + offset + j]);
+        Ok((part(0), part(m)))
     }
 }
 
@@ -53,33 +61,6 @@ impl Model {
             model.predict_mean_into(x, scratch, mean)
         })?;
         Ok(Mat::from_fn(m, x.ncols(), |j, t| mean[t * m + j]))
-    }
-
-    /// Mean and standard deviation, both m×T, for each column of `x`, K×T.
-    pub fn predict_with_std(&self, x: MatRef<'_, f64>) -> Result<(Mat<f64>, Mat<f64>)> {
-        let m = self.outputs();
-        let both = self.for_each_sample(x, 2 * m, |model, x, scratch, out| {
-            let (mean, std) = out.split_at_mut(m);
-            model.predict_into(x, scratch, mean, std)
-        })?;
-        let part = |offset| Mat::from_fn(m, x.ncols(), |j, t| both[t * 2 * m + offset + j]);
-        Ok((part(0), part(m)))
-    }
-
-    /// Mean and standard deviation of the m targets of one sample `x` (length K), in the targets'
-    /// units. The variance is that of the noise plus that of the function, φᵀΣφ; the deviation is
-    /// infinite where the [noise](Self::noise) is not known.
-    pub fn predict_into(
-        &self,
-        x: &[f64],
-        scratch: &mut Scratch,
-        mean: &mut [f64],
-        std: &mut [f64],
-    ) -> Result<()> {
-        check::length("standard deviations", self.outputs(), std.len())?;
-        self.predict_mean_into(x, scratch, mean)?;
-        self.deviations(scratch, std);
-        Ok(())
     }
 
     /// Mean of the m targets of one sample `x` (length K).
@@ -114,7 +95,7 @@ impl Model {
             for (t, out) in out.chunks_exact_mut(width).enumerate() {
                 let column = block * BLOCK + t;
                 sample.iter_mut().zip(x.col(column).iter()).for_each(|(s, v)| *s = *v);
-                predict(self, &sample, &mut scratch, out).map_err(|error| at(error, column))?;
+                predict(self, &sample, &mut scratch, out).map_err(|error| error.at(column))?;
             }
             Ok(())
         })?;
@@ -183,24 +164,6 @@ impl Model {
     }
 }
 
-impl Factor {
-    /// ‖M φ‖² over this factor's columns.
-    fn spread(&self, scratch: &mut Scratch) -> f64 {
-        let Scratch { phi, chosen, spread, .. } = scratch;
-        chosen.clear();
-        chosen.extend(self.columns.iter().map(|&c| phi[c]));
-        spread.clear();
-        spread.resize(chosen.len(), 0.0);
-        let mut packed = self.packed.as_slice();
-        for (j, &value) in chosen.iter().enumerate() {
-            let (column, rest) = packed.split_at(chosen.len() - j);
-            axpy(&mut spread[j..], value, column);
-            packed = rest;
-        }
-        spread.iter().map(|v| v * v).sum()
-    }
-}
-
 /// ‖z − c‖² to each of the centres, which come feature by feature: neighbours in memory, so that
 /// this vectorises, and some at a time, so that their sums stay in registers.
 fn squared_distances(z: &[f64], centres: &[f64], squared: &mut [f64]) {
@@ -223,13 +186,5 @@ fn squared_distances(z: &[f64], centres: &[f64], squared: &mut [f64]) {
             }
         }
         squared[start..start + LANES].copy_from_slice(&sums);
-    }
-}
-
-/// Names the sample in an error about one of its values.
-fn at(error: Error, column: usize) -> Error {
-    match error {
-        Error::BadValue { what, row, value, .. } => Error::BadValue { what, row, column, value },
-        other => other,
     }
 }

@@ -2,11 +2,11 @@
 
 use crate::model::Model;
 
-/// A fitted model and how the fitting went.
+/// What a fitter returns: a fitted model, and how the fitting went.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fit {
+pub struct Fit<M = Model> {
     /// The model.
-    pub model: Model,
+    pub model: M,
     /// How the fitting went.
     pub report: Report,
 }

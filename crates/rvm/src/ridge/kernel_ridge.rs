@@ -11,7 +11,8 @@ use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::linalg;
-use crate::model::parts::{Factor, Posterior};
+use crate::model::cholesky_factor::Factor;
+use crate::model::parts::Posterior;
 use crate::model::report::{Fit, Report, Trace};
 use crate::ridge::penalised::Penalised;
 

@@ -13,7 +13,8 @@ use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::linalg;
 use crate::model::Model;
-use crate::model::parts::{Factor, Posterior};
+use crate::model::cholesky_factor::Factor;
+use crate::model::parts::Posterior;
 use crate::model::report::{Fit, Report, Trace};
 use crate::ridge::penalised;
 use crate::ridge::penalised::Penalised;
@@ -235,7 +236,9 @@ impl<'a> Whitened<'a> {
                 let samples = self.equations.samples() as f64;
                 let left = penalised::freedom(self.equations, used);
                 if left >= 1.0 {
-                    noise.iter_mut().for_each(|noise| *noise *= (samples / left).sqrt());
+                    for noise in &mut noise {
+                        *noise *= (samples / left).sqrt();
+                    }
                 }
                 Factor { columns: Vec::new(), packed: Vec::new() }
             }

@@ -7,7 +7,8 @@ use crate::basis::normal_equations::Equations;
 use crate::error::{Error, Result};
 use crate::linalg;
 use crate::model::Model;
-use crate::model::parts::{Factor, Posterior};
+use crate::model::cholesky_factor::Factor;
+use crate::model::parts::Posterior;
 
 /// The minimiser of ‖Y − ΦW‖² + Σₖ ‖wₖ‖²/dₖ².
 ///
@@ -92,13 +93,4 @@ pub(crate) fn noise(
 /// Degrees of freedom that a fit which uses `used`, and the bias, leave.
 pub(crate) fn freedom(equations: &dyn Equations, used: f64) -> f64 {
     equations.samples() as f64 - 1.0 - used
-}
-
-impl Factor {
-    /// Packs a lower triangular matrix over `columns`.
-    pub(crate) fn pack(columns: Vec<usize>, lower: MatRef<'_, f64>) -> Self {
-        let n = columns.len();
-        let packed = (0..n).flat_map(|j| (j..n).map(move |i| lower[(i, j)])).collect();
-        Self { columns, packed }
-    }
 }

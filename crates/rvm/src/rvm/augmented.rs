@@ -5,10 +5,10 @@ use faer::{Mat, MatRef};
 use crate::data::check;
 use crate::data::scaler::Standardiser;
 use crate::error::{Error, Result};
-use crate::linalg::axpy;
 use crate::model::Model;
-use crate::model::parts::{Basis, Factor, Posterior, known};
-use crate::model::predict::Scratch;
+use crate::model::parts::{Basis, Posterior, known};
+use crate::model::regressor::Regressor;
+use crate::model::scratch::Scratch;
 
 /// A sparse Gaussian model with the predictive variance of RVM* (Rasmussen and Quiñonero-Candela
 /// 2005, *Healing the relevance vector machine through augmentation*).
@@ -89,9 +89,32 @@ impl Healed {
         &self.model
     }
 
-    /// Mean and standard deviation of the m targets of one sample `x` (length K), as
-    /// [`Model::predict_into`] but with a deviation that grows away from the training samples.
-    pub fn predict_into(
+    /// The additional Gaussian at the training samples and at its own centre, less its mean over the
+    /// training samples.
+    fn star(&self, centre: &[f64], beta: f64) -> (Vec<f64>, f64) {
+        let squared =
+            |sample: &[f64]| sample.iter().zip(centre).map(|(s, c)| (s - c) * (s - c)).sum::<f64>();
+        let n = self.z.ncols();
+        let mut star: Vec<f64> =
+            (0..n).map(|t| (-beta * squared(self.z.col_as_slice(t))).exp()).collect();
+        let mean = star.iter().sum::<f64>() / n as f64;
+        for value in &mut star {
+            *value -= mean;
+        }
+        (star, 1.0 - mean)
+    }
+}
+
+impl Regressor for Healed {
+    fn inputs(&self) -> usize {
+        self.model.inputs()
+    }
+
+    fn outputs(&self) -> usize {
+        self.model.outputs()
+    }
+
+    fn predict_into(
         &self,
         x: &[f64],
         scratch: &mut Scratch,
@@ -127,51 +150,6 @@ impl Healed {
             *std = (noise * (1.0 + plain + added)).sqrt();
         }
         Ok(())
-    }
-
-    /// Mean and standard deviation, both m×T, for each column of `x`, K×T.
-    pub fn predict_with_std(&self, x: MatRef<'_, f64>) -> Result<(Mat<f64>, Mat<f64>)> {
-        check::length("rows of x", self.model.inputs(), x.nrows())?;
-        let m = self.model.outputs();
-        let (mut mean, mut std) = (Mat::zeros(m, x.ncols()), Mat::zeros(m, x.ncols()));
-        let mut scratch = Scratch::default();
-        let mut sample = vec![0.0; x.nrows()];
-        for t in 0..x.ncols() {
-            sample.iter_mut().zip(x.col(t).iter()).for_each(|(s, v)| *s = *v);
-            let (mean, std) = (mean.col_as_slice_mut(t), std.col_as_slice_mut(t));
-            self.predict_into(&sample, &mut scratch, mean, std)?;
-        }
-        Ok((mean, std))
-    }
-
-    /// The additional Gaussian at the training samples and at its own centre, less its mean over the
-    /// training samples.
-    fn star(&self, centre: &[f64], beta: f64) -> (Vec<f64>, f64) {
-        let squared =
-            |sample: &[f64]| sample.iter().zip(centre).map(|(s, c)| (s - c) * (s - c)).sum::<f64>();
-        let n = self.z.ncols();
-        let mut star: Vec<f64> =
-            (0..n).map(|t| (-beta * squared(self.z.col_as_slice(t))).exp()).collect();
-        let mean = star.iter().sum::<f64>() / n as f64;
-        for value in &mut star {
-            *value -= mean;
-        }
-        (star, 1.0 - mean)
-    }
-}
-
-impl Factor {
-    /// M times the values that belong to this factor's columns.
-    fn times(&self, values: &[f64]) -> Vec<f64> {
-        let size = self.columns.len();
-        let mut out = vec![0.0; size];
-        let mut packed = self.packed.as_slice();
-        for (j, &column) in self.columns.iter().enumerate() {
-            let (below, rest) = packed.split_at(size - j);
-            axpy(&mut out[j..], values[column], below);
-            packed = rest;
-        }
-        out
     }
 }
 

@@ -10,10 +10,11 @@ use crate::basis::spec::Columns;
 use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
-use crate::model::parts::{Factor, Posterior};
+use crate::model::cholesky_factor::Factor;
+use crate::model::parts::Posterior;
 use crate::model::report::{Fit, Progress, Report};
-use crate::rvm::marginal_likelihood::Targets;
 use crate::rvm::marginal_likelihood::ascent::Ascent;
+use crate::rvm::marginal_likelihood::targets::Targets;
 use crate::stream::Sums;
 use crate::stream::summed::Summed;
 

@@ -11,10 +11,12 @@ use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
 use crate::error::Result;
 use crate::model::Model;
-use crate::model::parts::{Factor, Posterior};
+use crate::model::cholesky_factor::Factor;
+use crate::model::parts::Posterior;
 use crate::model::report::{Fit, Progress, Report, Trace};
+use crate::rvm::marginal_likelihood::Evidence;
 use crate::rvm::marginal_likelihood::ascent::Ascent;
-use crate::rvm::marginal_likelihood::{Evidence, Targets};
+use crate::rvm::marginal_likelihood::targets::Targets;
 
 /// Tipping's relevance vector machine (2001) by fast marginal likelihood maximisation (Tipping and
 /// Faul 2003), for each target by itself.

@@ -9,18 +9,12 @@ use rayon::prelude::*;
 use crate::basis::spec::Columns;
 use crate::error::{Error, Result};
 use crate::linalg;
-use crate::stream::parts::SumsParts;
+use crate::stream::parts::{MOST_SAMPLES, SumsParts, UNITS};
 
 /// Samples whose products are formed together.
 const BLOCK: usize = 512;
 /// Columns of the products that one task computes.
 const WIDTH: usize = 96;
-/// Most samples in one sum. With no standardised number above 2¹⁶ no sum exceeds 2⁶², whatever
-/// the samples, so that nothing here can overflow.
-const MOST_SAMPLES: usize = 1 << 30;
-/// 2⁶⁴: sums are kept in units of its inverse.
-const UNITS: f64 = 18_446_744_073_709_551_616.0;
-
 /// All that a regression on [`Columns`] needs of its samples: the sums of the products of each
 /// two among the p basis columns, the m standardised targets and the constant 1.
 ///
@@ -76,6 +70,22 @@ impl Sums {
         Ok(())
     }
 
+    /// Puts sums together from their parts, checked against each other.
+    pub fn from_parts(parts: SumsParts) -> Result<Self> {
+        parts.check()?;
+        Ok(Self { parts })
+    }
+
+    /// The sums' parts.
+    pub fn into_parts(self) -> SumsParts {
+        self.parts
+    }
+
+    /// A look at the parts.
+    pub fn parts(&self) -> &SumsParts {
+        &self.parts
+    }
+
     /// Number of samples added.
     pub fn samples(&self) -> usize {
         self.parts.samples()
@@ -114,6 +124,20 @@ impl Sums {
 
     fn check_room(&self, more: usize) -> Result<()> {
         room(self.samples().saturating_add(more))
+    }
+}
+
+impl TryFrom<SumsParts> for Sums {
+    type Error = Error;
+
+    fn try_from(parts: SumsParts) -> Result<Self> {
+        Self::from_parts(parts)
+    }
+}
+
+impl From<Sums> for SumsParts {
+    fn from(sums: Sums) -> Self {
+        sums.into_parts()
     }
 }
 

@@ -2,12 +2,16 @@
 
 use crate::basis::spec::FURTHEST;
 use crate::error::{Error, Result};
-use crate::stream::{MOST_SAMPLES, Sums};
 
+/// Most samples in one sum. With no standardised number above 2¹⁶ no sum exceeds 2⁶², whatever
+/// the samples, so that nothing here can overflow.
+pub(super) const MOST_SAMPLES: usize = 1 << 30;
+/// 2⁶⁴: sums are kept in units of its inverse.
+pub(super) const UNITS: f64 = 18_446_744_073_709_551_616.0;
 /// One, in the sums' units.
 const ONE: i128 = 1 << 64;
 
-/// Everything that [`Sums`] are made of.
+/// Everything that [`Sums`](crate::Sums) are made of.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SumsParts {
@@ -23,31 +27,13 @@ pub struct SumsParts {
     pub packed: Vec<i128>,
 }
 
-impl Sums {
-    /// Puts sums together from their parts, checked against each other.
-    pub fn from_parts(parts: SumsParts) -> Result<Self> {
-        parts.check()?;
-        Ok(Self { parts })
-    }
-
-    /// The sums' parts.
-    pub fn into_parts(self) -> SumsParts {
-        self.parts
-    }
-
-    /// A look at the parts.
-    pub fn parts(&self) -> &SumsParts {
-        &self.parts
-    }
-}
-
 impl SumsParts {
     /// Number of samples.
     pub(super) fn samples(&self) -> usize {
         self.packed.last().map_or(0, |&units| (units / ONE) as usize)
     }
 
-    fn check(&self) -> Result<()> {
+    pub(super) fn check(&self) -> Result<()> {
         let all = self.size.checked_add(self.outputs).and_then(|sum| sum.checked_add(1));
         let length =
             all.and_then(|all| all.checked_mul(all.checked_add(1)?)).map(|twice| twice / 2);
@@ -61,20 +47,6 @@ impl SumsParts {
         let most = 2 * count.unsigned_abs() * (FURTHEST * FURTHEST) as u128;
         let beyond = self.packed.iter().any(|sum| sum.unsigned_abs() > most);
         fault("packed", "holds a number that so few samples cannot sum to", beyond)
-    }
-}
-
-impl TryFrom<SumsParts> for Sums {
-    type Error = Error;
-
-    fn try_from(parts: SumsParts) -> Result<Self> {
-        Self::from_parts(parts)
-    }
-}
-
-impl From<Sums> for SumsParts {
-    fn from(sums: Sums) -> Self {
-        sums.into_parts()
     }
 }
 

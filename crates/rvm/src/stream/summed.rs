@@ -6,7 +6,8 @@ use crate::basis::normal_equations::Equations;
 use crate::basis::spec::Columns;
 use crate::error::{Error, Result};
 use crate::linalg;
-use crate::stream::{Sums, UNITS};
+use crate::stream::Sums;
+use crate::stream::parts::UNITS;
 
 /// Centred normal equations from sums.
 pub(crate) struct Summed<'a> {

@@ -43,14 +43,11 @@ pub struct ProjectionParts {
 impl Projection {
     /// Puts one together from its parts.
     pub fn from_parts(parts: ProjectionParts) -> Result<Self> {
-        let fault = |field, problem, present| {
-            if present { Err(Error::Parts { field, problem }) } else { Ok(()) }
-        };
         let expected = parts.inputs.checked_mul(parts.offset.len());
-        fault("matrix", "has the wrong length", Some(parts.matrix.len()) != expected)?;
+        check::part("matrix", "has the wrong length", Some(parts.matrix.len()) != expected)?;
         let unusable = |values: &[f32]| !values.iter().all(|value| value.is_finite());
-        fault("matrix", "holds an unusable number", unusable(&parts.matrix))?;
-        fault("offset", "holds an unusable number", unusable(&parts.offset))?;
+        check::part("matrix", "holds an unusable number", unusable(&parts.matrix))?;
+        check::part("offset", "holds an unusable number", unusable(&parts.offset))?;
         Ok(Self { parts })
     }
 

@@ -17,7 +17,7 @@ use crate::transform::pca::{Block, Principal, of_blocks};
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(5, 100, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
 /// let blocks = [Block { inputs: 2, components: 1 }, Block { inputs: 3, components: 3 }];
-/// let components = Components::of(x.as_ref(), &blocks)?;
+/// let components = Components::fit(x.as_ref(), &blocks)?;
 /// let z = components.apply(x.as_ref())?;
 /// assert_eq!(z.shape(), (4, 100));
 /// assert!((z.row(0).squared_norm_l2() / 100.0 - 1.0).abs() < 1e-3);
@@ -32,8 +32,8 @@ pub struct Components {
 }
 
 impl Components {
-    /// Of the samples `x`, K×n, whose rows are made up of `blocks`.
-    pub fn of(x: MatRef<'_, f64>, blocks: &[Block]) -> Result<Self> {
+    /// Fits X (K×I), whose rows are made up of `blocks`.
+    pub fn fit(x: MatRef<'_, f64>, blocks: &[Block]) -> Result<Self> {
         let map = |part: &Principal| Projection::about(&part.mean, part.matrix.as_ref());
         let blocks = of_blocks(x, blocks)?.iter().map(map).collect::<Result<_>>()?;
         Ok(Self { blocks })

@@ -3,18 +3,20 @@
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
-use crate::basis::kernel::Kernel;
+use crate::basis::kernel::{self, Kernel};
 use crate::basis::spec::Columns;
 use crate::data::check;
 use crate::data::permutation::random_subset;
 use crate::data::problem::Problem;
 use crate::data::scaler::Standardiser;
+use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::linalg;
 use crate::model::Model;
 use crate::ridge::nystrom::Nystrom;
 use crate::stream::Sums;
 use crate::transform::affine_map::Projection;
+use crate::transform::learned_metric::{Group, Metric};
 use crate::transform::pca::{Block, of_blocks};
 
 /// Seeds of the choice of centres, and of the samples whose gradients are averaged.
@@ -47,7 +49,7 @@ const GRADIENT_SEED: u64 = 1;
 /// let learning =
 ///     GradientMetric { regression: nystrom.clone(), rounds: 2, centres: 100, gradients: 400, rank: 1 };
 /// let blocks = [Block { inputs: 6, components: 6 }];
-/// let metric = learning.learn(x.as_ref(), y.as_ref(), &blocks, &[vec![0]])?;
+/// let metric = learning.fit(x.as_ref(), y.as_ref(), &blocks, &[vec![0]])?;
 ///
 /// // Of six inputs one number is left, and from it the target follows.
 /// let z = metric.projection.apply(x.as_ref())?;
@@ -74,43 +76,20 @@ pub struct GradientMetric {
     pub rank: usize,
 }
 
-/// A group of targets and what it reads.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Group {
-    /// Indices of the targets.
-    pub outputs: Vec<usize>,
-    /// How many of the projected numbers are its own, after those of the groups before.
-    pub rank: usize,
-}
-
-/// Learnt distances: Euclidean ones between the projected inputs, of which each group of targets
-/// looks at its own.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Metric {
-    /// From the inputs to the numbers of all groups, one group's after the other's.
-    pub projection: Projection,
-    /// The groups.
-    pub groups: Vec<Group>,
-}
-
 impl GradientMetric {
     /// How many times its rank a group may read before the last round.
     pub const WIDER: usize = 3;
 
-    /// Learns from inputs `x`, K×n, made up of `blocks`, and targets `y`, m×n, in `groups` of
+    /// Fits X (K×I), whose rows are made up of `blocks`, to Y (m×I), whose rows are in `groups` of
     /// indices.
-    pub fn learn(
+    pub fn fit(
         &self,
         x: MatRef<'_, f64>,
         y: MatRef<'_, f64>,
         blocks: &[Block],
         groups: &[Vec<usize>],
     ) -> Result<Metric> {
-        for count in [self.rounds, self.rank, self.gradients] {
-            check::count(count.min(1), 1)?;
-        }
+        self.check(ProblemSize::of(x, y))?;
         check::matrix("y", y)?;
         check::length("columns (samples) of y", x.ncols(), y.ncols())?;
         if let Some(&output) = groups.iter().flatten().find(|&&output| output >= y.nrows()) {
@@ -131,6 +110,15 @@ impl GradientMetric {
         let all = stacked(&directions, principal.nrows());
         let matrix = linalg::product(all.as_ref(), principal.as_ref());
         Ok(Metric { projection: Projection::about(&mean, matrix.as_ref())?, groups })
+    }
+
+    /// Refuses settings out of range, and more Gaussians than a dense solver takes.
+    pub fn check(&self, size: ProblemSize) -> Result<()> {
+        for count in [self.rounds, self.rank, self.gradients, self.centres] {
+            check::count(count.min(1), 1)?;
+        }
+        self.regression.check(size)?;
+        kernel::limited(self.centres.min(size.samples)).map(drop)
     }
 
     /// Numbers that a group may read after this round.

@@ -1,12 +1,11 @@
 //! A regressor for each group of targets, on a projection of the inputs that they share.
 
-use faer::{Mat, MatRef};
-
 use crate::data::check;
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::model::predict::Scratch;
-use crate::transform::egop::Metric;
+use crate::model::regressor::Regressor;
+use crate::model::scratch::Scratch;
+use crate::transform::learned_metric::Metric;
 
 /// Models of groups of targets, each of which looks at its own part of what a [`Metric`] makes of
 /// the inputs.
@@ -55,20 +54,18 @@ impl Projected {
     pub fn models(&self) -> &[Model] {
         &self.models
     }
+}
 
-    /// Length K of an input.
-    pub fn inputs(&self) -> usize {
+impl Regressor for Projected {
+    fn inputs(&self) -> usize {
         self.metric.projection.inputs()
     }
 
-    /// Number m of targets.
-    pub fn outputs(&self) -> usize {
+    fn outputs(&self) -> usize {
         self.models.iter().map(Model::outputs).sum()
     }
 
-    /// Mean and standard deviation of the m targets of one input `x` (length K), as
-    /// [`Model::predict_into`].
-    pub fn predict_into(
+    fn predict_into(
         &self,
         x: &[f64],
         scratch: &mut Scratch,
@@ -93,20 +90,6 @@ impl Projected {
         }
         (scratch.single, scratch.projected) = (single, z);
         Ok(())
-    }
-}
-
-impl Metric {
-    /// The part of the projected numbers `z`, d×n, that the group of this number reads.
-    pub fn part<'a>(&self, group: usize, z: MatRef<'a, f64>) -> MatRef<'a, f64> {
-        let start = self.groups[..group].iter().map(|group| group.rank).sum();
-        z.subrows(start, self.groups[group].rank)
-    }
-
-    /// The targets of the group of this number, out of all, m×n.
-    pub fn targets(&self, group: usize, y: MatRef<'_, f64>) -> Mat<f64> {
-        let outputs = &self.groups[group].outputs;
-        Mat::from_fn(outputs.len(), y.ncols(), |place, i| y[(outputs[place], i)])
     }
 }
 

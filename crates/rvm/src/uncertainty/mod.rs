@@ -89,6 +89,22 @@ impl ConditionalDensity {
         })
     }
 
+    /// Puts one together from its parts, checked against each other.
+    pub fn from_parts(parts: ConditionalDensityParts) -> Result<Self> {
+        parts.check()?;
+        Ok(Self { parts })
+    }
+
+    /// Its parts.
+    pub fn into_parts(self) -> ConditionalDensityParts {
+        self.parts
+    }
+
+    /// A look at the parts.
+    pub fn parts(&self) -> &ConditionalDensityParts {
+        &self.parts
+    }
+
     /// Length m of a target vector.
     pub fn outputs(&self) -> usize {
         self.parts.outputs
@@ -162,6 +178,20 @@ impl ConditionalDensity {
             std: (0..units.len()).map(|j| units[j] * spread(j)).collect(),
             weight: members.len() as f64 / residuals.ncols() as f64,
         })
+    }
+}
+
+impl TryFrom<ConditionalDensityParts> for ConditionalDensity {
+    type Error = Error;
+
+    fn try_from(parts: ConditionalDensityParts) -> Result<Self> {
+        Self::from_parts(parts)
+    }
+}
+
+impl From<ConditionalDensity> for ConditionalDensityParts {
+    fn from(density: ConditionalDensity) -> Self {
+        density.into_parts()
     }
 }
 

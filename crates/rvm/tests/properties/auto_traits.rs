@@ -2,10 +2,10 @@
 
 use phalanx_rvm::{
     Basis, Block, Bridges, Cascade, Columns, Components, ConditionalDensity,
-    ConditionalDensityParts, Deviation, Error, Factor, Fit, FittedNetwork, ForwardSelection,
-    GradientMetric, Group, Healed, Hypothesis, Kernel, KernelRidge, Lambda, LearntWidths, Metric,
-    Model, ModelParts, MultivariateRvm, Network, NetworkOnComponents, NetworkParts, Nystrom,
-    Penalty, Perceptron, Pilot, Posterior, Progress, Projected, Projection, ProjectionParts,
+    ConditionalDensityParts, Deviation, Error, Factor, Fit, ForwardSelection, GradientMetric,
+    Group, Healed, Hypothesis, Kernel, KernelRidge, Lambda, LearntWidths, Metric, Model,
+    ModelParts, MultivariateRvm, Network, NetworkOnComponents, NetworkParts, Nystrom, Penalty,
+    Perceptron, Pilot, Posterior, Progress, Projected, Projection, ProjectionParts, Regressor,
     Report, Ridge, Scratch, Standardiser, Stop, Sums, SumsParts, Tie, Tipping, Trace, Width,
 };
 
@@ -17,6 +17,7 @@ macro_rules! shared {
 
 // A type that is not makes the tests fail to compile.
 shared!(
+    Box<dyn Regressor>,
     Basis,
     Block,
     Bridges,
@@ -29,7 +30,7 @@ shared!(
     Error,
     Factor,
     Fit,
-    FittedNetwork,
+    Fit<Network>,
     ForwardSelection,
     GradientMetric,
     Group,

@@ -3,7 +3,8 @@
 use faer::Mat;
 use phalanx_rvm::{
     Bridges, Cascade, Error, ForwardSelection, Kernel, KernelRidge, Lambda, LearntWidths,
-    MultivariateRvm, Nystrom, Penalty, ProblemSize, Ridge, Standardiser, Stop, Tipping, Width,
+    MultivariateRvm, Nystrom, Penalty, ProblemSize, Regressor, Ridge, Standardiser, Stop, Tipping,
+    Width,
 };
 use proptest::prelude::*;
 

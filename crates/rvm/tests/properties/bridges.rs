@@ -1,7 +1,7 @@
 //! Bridges against a literal transcription of the paper's section 4.
 
 use faer::{Mat, MatRef};
-use phalanx_rvm::{Bridges, Cascade, Kernel, Standardiser, Stop, Width};
+use phalanx_rvm::{Bridges, Cascade, Kernel, Regressor, Standardiser, Stop, Width};
 use proptest::prelude::*;
 
 use crate::problems::{GAUSSIAN, close, rows, smooth, solve};

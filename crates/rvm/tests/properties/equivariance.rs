@@ -1,7 +1,7 @@
 //! What must not matter: the order of samples and of targets, the targets' units, the threads.
 
 use faer::Mat;
-use phalanx_rvm::{Bridges, Kernel, Stop};
+use phalanx_rvm::{Bridges, Kernel, Regressor, Stop};
 use proptest::prelude::*;
 
 use crate::problems::{FITTERS, Source, close, columns, rows, smooth};

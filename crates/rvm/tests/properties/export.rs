@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use faer::Mat;
-use phalanx_rvm::{Error, Kernel, Model, MultivariateRvm, Ridge, Tipping};
+use phalanx_rvm::{Error, Kernel, Model, MultivariateRvm, Regressor, Ridge, Tipping};
 
 use crate::problems::{close, smooth};
 

@@ -3,7 +3,8 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use phalanx_rvm::{
-    Basis, Error, Healed, KernelRidge, MultivariateRvm, Posterior, Ridge, Standardiser, Tipping,
+    Basis, Error, Healed, KernelRidge, MultivariateRvm, Posterior, Regressor, Ridge, Standardiser,
+    Tipping,
 };
 use proptest::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Kernel ridge regression against refitting without each sample, and as a Gaussian process.
 
 use faer::{Mat, MatRef};
-use phalanx_rvm::{KernelRidge, Lambda, Standardiser, Width};
+use phalanx_rvm::{KernelRidge, Lambda, Regressor, Standardiser, Width};
 use proptest::prelude::*;
 
 use crate::problems::{smooth, solve};

@@ -3,7 +3,7 @@
 use phalanx_rvm::faer::{Mat, MatRef};
 use phalanx_rvm::{
     Block, Columns, Deviation, Error, GradientMetric, Group, Metric, Nystrom, Penalty, Pilot,
-    Projected, Projection, ProjectionParts, Scratch, Sums, Width, random_subset,
+    Projected, Projection, ProjectionParts, Regressor, Scratch, Sums, Width, random_subset,
 };
 use proptest::prelude::*;
 use rand_core::{Rng, SeedableRng};
@@ -44,7 +44,7 @@ fn learnt(rounds: usize) -> (Mat<f64>, Mat<f64>, Metric) {
     let x = uniform(INPUTS, 400, 1);
     let y = targets(x.as_ref());
     let metric =
-        learner(3, rounds).learn(x.as_ref(), y.as_ref(), &blocks(), &[vec![0], vec![1]]).unwrap();
+        learner(3, rounds).fit(x.as_ref(), y.as_ref(), &blocks(), &[vec![0], vec![1]]).unwrap();
     (x, y, metric)
 }
 
@@ -133,7 +133,7 @@ fn any_number_of_threads_learns_the_same() {
 fn targets_that_do_not_vary_read_nothing() {
     let x = uniform(INPUTS, 60, 4);
     let y = Mat::from_fn(1, 60, |_, _| 2.5);
-    let metric = learner(3, 2).learn(x.as_ref(), y.as_ref(), &blocks(), &[vec![0]]).unwrap();
+    let metric = learner(3, 2).fit(x.as_ref(), y.as_ref(), &blocks(), &[vec![0]]).unwrap();
     assert_eq!(metric.groups, [Group { outputs: vec![0], rank: 0 }]);
 }
 
@@ -142,7 +142,7 @@ fn what_cannot_be_learnt_from_is_refused_by_name() {
     let x = uniform(INPUTS, 60, 4);
     let y = targets(x.as_ref());
     let learn = |learner: GradientMetric, blocks: &[Block], groups: &[Vec<usize>]| {
-        learner.learn(x.as_ref(), y.as_ref(), blocks, groups).unwrap_err()
+        learner.fit(x.as_ref(), y.as_ref(), blocks, groups).unwrap_err()
     };
     let short = [Block { inputs: 7, components: 2 }];
     assert!(matches!(

@@ -3,7 +3,9 @@
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef};
-use phalanx_rvm::{Columns, Kernel, MultivariateRvm, Pilot, Standardiser, Sums, Tipping, Width};
+use phalanx_rvm::{
+    Columns, Kernel, MultivariateRvm, Pilot, Regressor, Standardiser, Sums, Tipping, Width,
+};
 use proptest::prelude::*;
 
 use crate::problems::{GAUSSIAN, Source, close, rows, smooth};

@@ -2,7 +2,8 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Kernel, KernelRidge, Lambda, Nystrom, Penalty, Pilot, Standardiser, Sums, Width, random_subset,
+    Kernel, KernelRidge, Lambda, Nystrom, Penalty, Pilot, Regressor, Standardiser, Sums, Width,
+    random_subset,
 };
 use proptest::prelude::*;
 

@@ -1,6 +1,6 @@
 //! Models in and out of their parts and bytes, and single against batch predictions.
 
-use phalanx_rvm::{Basis, Error, Model, ModelParts, Posterior, Scratch};
+use phalanx_rvm::{Basis, Error, Model, ModelParts, Posterior, Regressor, Scratch};
 use proptest::prelude::*;
 
 use crate::problems::{FITTERS, smooth};

@@ -2,8 +2,8 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, Components, Error, FittedNetwork, Network, NetworkOnComponents, NetworkParts,
-    Perceptron, Projection, ProjectionParts, Scratch, random_subset,
+    Block, Components, Error, Fit, Network, NetworkOnComponents, NetworkParts, Perceptron,
+    Projection, ProjectionParts, Regressor, Scratch, random_subset,
 };
 use proptest::prelude::*;
 
@@ -14,12 +14,8 @@ fn small() -> Perceptron {
     Perceptron { hidden: vec![16, 16], epochs: 30, batch: 32, rate: 5e-3, dropout: 0.0, seed: 3 }
 }
 
-fn single(x: MatRef<'_, f64>) -> Mat<f32> {
-    Mat::from_fn(x.nrows(), x.ncols(), |i, j| x[(i, j)] as f32)
-}
-
-fn fit(fitter: &Perceptron, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> FittedNetwork {
-    fitter.fit(single(x).as_ref(), y).expect("a network")
+fn fit(fitter: &Perceptron, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Fit<Network> {
+    fitter.fit(x, y).expect("a network")
 }
 
 fn predict(network: &Network, x: MatRef<'_, f64>) -> (Mat<f64>, Vec<f64>) {
@@ -50,7 +46,7 @@ proptest! {
     #[test]
     fn deviations_are_of_samples_that_were_not_learnt_from(seed in any::<u64>()) {
         let (x, y) = bent(seed, 320);
-        let (mean, std) = predict(&fit(&small(), x.as_ref(), y.as_ref()).network, x.as_ref());
+        let (mean, std) = predict(&fit(&small(), x.as_ref(), y.as_ref()).model, x.as_ref());
         for (j, std) in std.into_iter().enumerate() {
             let held_out = random_subset(320, 20, small().seed);
             let squares = held_out.into_iter().map(|t| (mean[(j, t)] - y[(j, t)]).powi(2));
@@ -65,11 +61,11 @@ proptest! {
     fn units_do_not_matter(seed in any::<u64>(), scale in -40..40_i32, shift in -1e5..1e5_f64) {
         let (x, y) = bent(seed, 200);
         let scale = 2.0_f64.powi(scale); // exact
-        let (plain, _) = predict(&fit(&small(), x.as_ref(), y.as_ref()).network, x.as_ref());
+        let (plain, _) = predict(&fit(&small(), x.as_ref(), y.as_ref()).model, x.as_ref());
         let other_x = Mat::from_fn(2, 200, |i, t| scale * x[(i, t)]);
         let other_y = Mat::from_fn(2, 200, |j, t| scale * (shift + y[(j, t)]));
         let other = fit(&small(), other_x.as_ref(), other_y.as_ref());
-        let (other, _) = predict(&other.network, other_x.as_ref());
+        let (other, _) = predict(&other.model, other_x.as_ref());
         for t in 0..200 {
             for j in 0..2 {
                 let back = other[(j, t)] / scale - shift;
@@ -85,7 +81,7 @@ proptest! {
     fn components_turn_and_scale_blocks(seed in any::<u64>(), first in 1..4_usize) {
         let x = Source::new(seed).matrix(first + 3, 60);
         let blocks = [first, 3].map(|inputs| Block { inputs, components: inputs });
-        let components = Components::of(x.as_ref(), &blocks).unwrap();
+        let components = Components::fit(x.as_ref(), &blocks).unwrap();
         prop_assert_eq!((components.inputs(), components.outputs()), (first + 3, first + 3));
         let z = components.apply(x.as_ref()).unwrap();
         for (start, count) in [(0, first), (first, 3)] {
@@ -106,7 +102,7 @@ fn a_bent_surface_is_learnt() {
     let fitter = Perceptron { hidden: vec![32, 32], epochs: 60, ..small() };
     let fitted = fit(&fitter, x.as_ref(), y.as_ref());
     let (new_x, new_y) = bent(2, 300);
-    let (mean, _) = predict(&fitted.network, new_x.as_ref());
+    let (mean, _) = predict(&fitted.model, new_x.as_ref());
     let error = (&mean - &new_y).norm_l1() / 600.0;
     assert!(error < 0.05, "{error}");
     let course = &fitted.report.traces[0].objective;
@@ -133,20 +129,19 @@ fn any_number_of_threads_and_dropout_give_the_same_bits() {
 fn what_does_not_vary_stays_and_has_no_deviation() {
     let (x, mut y) = bent(7, 64);
     y.row_mut(1).fill(4.5);
-    let (mean, std) = predict(&fit(&small(), x.as_ref(), y.as_ref()).network, x.as_ref());
+    let (mean, std) = predict(&fit(&small(), x.as_ref(), y.as_ref()).model, x.as_ref());
     assert!((0..64).all(|t| mean[(1, t)] == 4.5) && std[1] == f64::INFINITY && std[0] > 0.0);
     y.fill(-1.25);
-    let (mean, std) = predict(&fit(&small(), x.as_ref(), y.as_ref()).network, x.as_ref());
+    let (mean, std) = predict(&fit(&small(), x.as_ref(), y.as_ref()).model, x.as_ref());
     assert!(mean.col_iter().all(|c| c.iter().all(|&v| v == -1.25)) && std == [f64::INFINITY; 2]);
     // One sample is the mean.
     let one = fit(&small(), x.subcols(0, 1), mean.subcols(0, 1));
-    assert_eq!(predict(&one.network, x.subcols(0, 1)).0, mean.subcols(0, 1));
+    assert_eq!(predict(&one.model, x.subcols(0, 1)).0, mean.subcols(0, 1));
 }
 
 #[test]
 fn what_cannot_be_learnt_from_is_named() {
     let (x, y) = bent(9, 40);
-    let x = single(x.as_ref());
     let refused = |fitter: Perceptron| fitter.fit(x.as_ref(), y.as_ref()).unwrap_err().to_string();
     for (fitter, name) in [
         (Perceptron { epochs: 0, ..small() }, "epochs"),
@@ -160,7 +155,7 @@ fn what_cannot_be_learnt_from_is_named() {
     let fewer = small().fit(x.as_ref(), y.subcols(0, 39));
     assert!(matches!(fewer, Err(Error::Shape { .. })));
     let mut spoilt = x.clone();
-    spoilt[(1, 3)] = f32::INFINITY;
+    spoilt[(1, 3)] = f64::INFINITY;
     let bad = small().fit(spoilt.as_ref(), y.as_ref()).unwrap_err();
     assert!(matches!(bad, Error::BadValue { what: "x", row: 1, column: 3, .. }), "{bad}");
     let none = small().fit(x.subcols(0, 0), y.subcols(0, 0));

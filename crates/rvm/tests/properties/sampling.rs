@@ -3,8 +3,8 @@
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
     Block, Bridges, Cascade, Columns, Error, ForwardSelection, GradientMetric, Kernel, KernelRidge,
-    LearntWidths, Model, MultivariateRvm, Nystrom, Perceptron, Pilot, Projected, Result, Ridge,
-    Scratch, Stop, Sums, Tipping, Width, random_subset,
+    LearntWidths, Model, MultivariateRvm, Nystrom, Perceptron, Pilot, Projected, Regressor, Result,
+    Ridge, Stop, Sums, Tipping, Width, random_subset,
 };
 
 use crate::problems::{GAUSSIAN, Source, columns};
@@ -186,7 +186,7 @@ fn learnt_metric() {
     let blocks = [Block { inputs: 6, components: 6 }];
     alike(&ROWS, |x, y| {
         let groups = [vec![0, 1], vec![2]];
-        let metric = learning.learn(x.as_ref(), y.as_ref(), &blocks, &groups).unwrap();
+        let metric = learning.fit(x.as_ref(), y.as_ref(), &blocks, &groups).unwrap();
         let z = metric.projection.apply(x.as_ref()).unwrap();
         let centres = random_subset(x.ncols(), CENTRES, 1);
         let model = |group| {
@@ -194,9 +194,7 @@ fn learnt_metric() {
             regression.fit_on(x, y.as_ref(), &centres).unwrap().model
         };
         let projected = Projected::from_parts(metric.clone(), vec![model(0), model(1)]).unwrap();
-        error(|x| {
-            predict(x, 3, |x, scratch, mean, std| projected.predict_into(x, scratch, mean, std))
-        })
+        error(|x| projected.predict_with_std(x).unwrap().0)
     });
 }
 
@@ -210,27 +208,9 @@ fn perceptron() {
         ..Perceptron::default()
     };
     alike(&ROWS, |x, y| {
-        let single = Mat::from_fn(x.nrows(), x.ncols(), |i, t| x[(i, t)] as f32);
-        let network = fitter.fit(single.as_ref(), y.as_ref()).unwrap().network;
-        error(|x| {
-            predict(x, 3, |x, scratch, mean, std| network.predict_into(x, scratch, mean, std))
-        })
+        let network = fitter.fit(x.as_ref(), y.as_ref()).unwrap().model;
+        error(|x| network.predict_with_std(x).unwrap().0)
     });
-}
-
-/// Predicts every column of `x`.
-fn predict(
-    x: MatRef<'_, f64>,
-    outputs: usize,
-    predict_into: impl Fn(&[f64], &mut Scratch, &mut [f64], &mut [f64]) -> Result<()>,
-) -> Mat<f64> {
-    let (mut scratch, mut std) = (Scratch::default(), vec![0.0; outputs]);
-    let mut all = Mat::zeros(outputs, x.ncols());
-    for t in 0..x.ncols() {
-        let input: Vec<f64> = x.col(t).iter().copied().collect();
-        predict_into(&input, &mut scratch, all.col_as_slice_mut(t), &mut std).unwrap();
-    }
-    all
 }
 
 #[test]

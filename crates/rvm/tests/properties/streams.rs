@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Bridges, Cascade, Columns, Error, Fit, ForwardSelection, Kernel, Pilot, Result, Ridge, Stop,
-    Sums, SumsParts, Width, random_subset,
+    Bridges, Cascade, Columns, Error, Fit, ForwardSelection, Kernel, Pilot, Regressor, Result,
+    Ridge, Stop, Sums, SumsParts, Width, random_subset,
 };
 use proptest::prelude::*;
 

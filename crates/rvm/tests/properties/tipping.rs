@@ -1,7 +1,7 @@
 //! Tipping's machine from outside: its evidence, its sparsity, its honesty.
 
 use faer::Mat;
-use phalanx_rvm::{Kernel, Tipping, Width};
+use phalanx_rvm::{Kernel, Regressor, Tipping, Width};
 use proptest::prelude::*;
 
 use crate::problems::{GAUSSIAN, Source, smooth};

@@ -6,6 +6,7 @@ use faer::{Mat, MatRef};
 use phalanx::Regressor;
 use phalanx_hand::Dof;
 use phalanx_multiview::{Estimate, inverse_variance, mean};
+use phalanx_rvm::Regressor as _;
 use phalanx_rvm::{Model, Ridge};
 
 use super::descriptors::Descriptors;

@@ -3,7 +3,8 @@
 use crate::data::check;
 use crate::error::{Error, Result};
 use crate::model::report::{Progress, Trace};
-use crate::rvm::marginal_likelihood::{Evidence, Targets};
+use crate::rvm::marginal_likelihood::Evidence;
+use crate::rvm::marginal_likelihood::targets::Targets;
 
 /// Steps between two computations from scratch, besides one for each active column: then the
 /// computation, which costs about a step for each, hardly matters.

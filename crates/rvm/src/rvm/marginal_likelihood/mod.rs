@@ -4,30 +4,20 @@ mod active;
 pub(crate) mod ascent;
 mod posterior;
 mod steps;
+pub(crate) mod targets;
 #[cfg(test)]
 mod tests;
 
-use faer::{Mat, MatRef};
+use faer::Mat;
 
 use crate::error::Result;
+use crate::linalg;
 use crate::rvm::marginal_likelihood::active::Active;
 use crate::rvm::marginal_likelihood::posterior::Posterior;
+use crate::rvm::marginal_likelihood::targets::Targets;
 
 /// First guess of the noise, as a share of a target's variance.
 const FIRST_NOISE: f64 = 0.1;
-
-/// Standardised targets, none of them constant, seen through the normal equations.
-#[derive(Clone, Copy)]
-pub(crate) struct Targets<'a> {
-    /// G = ΦᵀΦ, p×p.
-    pub(crate) gram: &'a Mat<f64>,
-    /// ΦᵀY, p×m.
-    pub(crate) correlations: MatRef<'a, f64>,
-    /// ‖yⱼ‖² of each of the m targets.
-    pub(crate) energies: &'a [f64],
-    /// Samples less one for the bias.
-    pub(crate) freedom: f64,
-}
 
 /// State of Tipping and Faul's (2003) algorithm for targets that share their precisions, with
 /// their symbols.
@@ -81,6 +71,31 @@ impl<'a> Evidence<'a> {
         evidence.update_noise();
         evidence.noise.iter_mut().for_each(|noise| *noise = (FIRST_NOISE * *noise).max(floor));
         Ok(evidence)
+    }
+
+    fn posterior(&self) -> Result<Posterior> {
+        Posterior::of(&self.active, &self.targets)
+    }
+
+    /// Computes everything anew from the active columns and their precisions.
+    pub(super) fn refresh(&mut self) -> Result<()> {
+        let Posterior { factor, mu, misfit, log_determinant } = self.posterior()?;
+        let gram = self.targets.gram;
+        for (k, s) in self.sparsity.iter_mut().enumerate() {
+            *s = gram[(k, k)];
+        }
+        let overlap = linalg::times_upper(self.active.gram.as_ref(), factor.transpose());
+        for column in overlap.col_iter() {
+            self.sparsity.iter_mut().zip(column.iter()).for_each(|(s, c)| *s -= c * c);
+        }
+        self.quality =
+            self.targets.correlations - linalg::product(self.active.gram.as_ref(), mu.as_ref());
+        self.active.sigma = linalg::gram(factor.as_ref());
+        self.active.mu = mu.transpose().to_owned();
+        self.misfit = misfit;
+        self.log_determinant = log_determinant;
+        self.stale = 0;
+        Ok(())
     }
 
     /// Starts with these columns active, at these precisions and the noise that goes with them.
