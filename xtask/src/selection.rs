@@ -11,7 +11,7 @@ use faer::Mat;
 use phalanx::OrientationRule;
 use phalanx_multiview::Vocabulary;
 use phalanx_rvm::{
-    Bridges, Columns, Fit, ForwardSelection, Kernel, MultivariateRvm, Nystrom, Pilot, Ridge, Stop,
+    Bridges, Columns, Fit, ForwardSelection, Kernel, MultiOutputRvm, Nystrom, Pilot, Ridge, Stop,
     Sums, Width, random_subset,
 };
 
@@ -76,7 +76,7 @@ impl Selector {
                 ForwardSelection { kernel: KERNEL, count, lambda: LAMBDA, sweeps: 0 }.fit(x, y)?
             }
             Self::MultivariateRvm => {
-                MultivariateRvm { kernel: KERNEL, most: Some(count), ..MultivariateRvm::default() }
+                MultiOutputRvm { kernel: KERNEL, most: Some(count), ..MultiOutputRvm::default() }
                     .fit(x, y)?
             }
             Self::Nystrom => {

@@ -29,9 +29,9 @@ pub enum Regressor {
     /// Orthogonal forward selection over all outputs.
     Forward(ForwardSelection),
     /// Tipping's relevance vector machine, one per output.
-    Tipping(Tipping),
+    Tipping(RelevanceVectorMachine),
     /// The relevance vector machine whose outputs share their vectors.
-    MultivariateRvm(MultivariateRvm),
+    MultivariateRvm(MultiOutputRvm),
     /// Dense kernel ridge regression.
     KernelRidge(KernelRidge),
     /// Kernel ridge regression on Gaussians of some of the samples.

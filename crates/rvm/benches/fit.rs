@@ -5,7 +5,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use faer::Mat;
 use phalanx_rvm::{
-    Bridges, ForwardSelection, Kernel, KernelRidge, Regressor, Scratch, Stop, Tipping, Width,
+    Bridges, ForwardSelection, Kernel, KernelRidge, Regressor, Scratch, Stop, RelevanceVectorMachine, Width,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -53,7 +53,7 @@ fn fits(c: &mut Criterion) {
     group.bench_function("forward gaussian to 40", |b| {
         b.iter(|| forward.fit(black_box(x), y).unwrap());
     });
-    let tipping = Tipping { kernel: Kernel::Linear, ..Tipping::default() };
+    let tipping = RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() };
     group.bench_function("Tipping linear", |b| {
         b.iter(|| tipping.fit(black_box(x), y).unwrap());
     });

@@ -4,7 +4,7 @@
 //!     cargo run --release -p phalanx-rvm --example deviation > crates/rvm/deviation.svg
 
 use phalanx_rvm::faer::Mat;
-use phalanx_rvm::{Healed, LearntWidths, Regressor, Result};
+use phalanx_rvm::{AugmentedRvm, ArdRvm, Regressor, Result};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -36,13 +36,13 @@ fn main() -> Result<()> {
     let y = Mat::from_fn(1, 120, |_, t| {
         sinc(x[(0, t)]) + 0.1 * (0..12).map(|_| uniform()).sum::<f64>()
     });
-    let model = LearntWidths::default().fit(x.as_ref(), y.as_ref())?.model;
+    let model = ArdRvm::default().fit(x.as_ref(), y.as_ref())?.model;
     let kept = model.kept_samples().to_vec();
     let along = |t: usize| REACH * (2.0 * t as f64 / (POINTS - 1) as f64 - 1.0);
     let grid = Mat::from_fn(1, POINTS, |_, t| along(t));
     let (mean, plain) = model.predict_with_std(grid.as_ref())?;
     let (_, healed) =
-        Healed::new(model, x.as_ref(), y.as_ref())?.predict_with_std(grid.as_ref())?;
+        AugmentedRvm::new(model, x.as_ref(), y.as_ref())?.predict_with_std(grid.as_ref())?;
 
     let band = |std: &Mat<f64>| {
         let edge = |t: usize, sign: f64| place(along(t), mean[(0, t)] + sign * 2.0 * std[(0, t)]);

@@ -5,7 +5,7 @@
 
 use phalanx_rvm::faer::Mat;
 use phalanx_rvm::{
-    Bridges, Fit, ForwardSelection, Kernel, KernelRidge, Regressor, Result, Tipping, Width,
+    Bridges, Fit, ForwardSelection, Kernel, KernelRidge, Regressor, Result, RelevanceVectorMachine, Width,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -28,7 +28,7 @@ fn main() -> Result<()> {
 
     let width = Width::Scatter(7.0);
     let kernel = Kernel::Gaussian(width);
-    show("Tipping", &Tipping { kernel, ..Tipping::default() }.fit(x, y)?)?;
+    show("Tipping", &RelevanceVectorMachine { kernel, ..RelevanceVectorMachine::default() }.fit(x, y)?)?;
     // One target alone wants a gentler prior than many that agree.
     show("bridges", &Bridges { kernel, nu: 0.03, ..Bridges::default() }.fit(x, y)?)?;
     show(

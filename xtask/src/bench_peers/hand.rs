@@ -3,7 +3,7 @@
 use anyhow::Result;
 use phalanx_rvm::faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, Bridges, Columns, ForwardSelection, GradientMetric, Kernel, Model, MultivariateRvm,
+    Block, Bridges, Columns, ForwardSelection, GradientMetric, Kernel, Model, MultiOutputRvm,
     Nystrom, Pilot, Projection, Stop, Sums, Width,
 };
 
@@ -46,7 +46,7 @@ pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
     let (fastrvm, ridge) = (theirs("fastrvm"), theirs("krr"));
     eprintln!("hand: ours");
     let width = width(&problem);
-    let rvm = MultivariateRvm { kernel: Kernel::Gaussian(width), ..MultivariateRvm::default() };
+    let rvm = MultiOutputRvm { kernel: Kernel::Gaussian(width), ..MultiOutputRvm::default() };
     let shared =
         measure(&problem, || as_given(&problem, width, |c, s| Ok(rvm.fit_sums(c, s)?.model)))?;
     let few = measure(&problem, || as_given(&problem, width, |c, s| forward(c, s, width)))?;

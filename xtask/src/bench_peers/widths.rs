@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use anyhow::{Result, anyhow};
-use phalanx_rvm::LearntWidths;
+use phalanx_rvm::ArdRvm;
 
 use super::clock::{middle, timed};
 use super::data::Problem;
@@ -75,7 +75,7 @@ fn read(printed: &Result<String>, name: &str) -> Result<Outcome> {
 fn fit(folder: &Path, name: &str) -> Result<Outcome> {
     let problem = Problem::read(folder, name)?;
     let (x, y) = (problem.x.as_ref(), problem.y.as_ref());
-    let (seconds, fit) = timed(|| LearntWidths::default().fit(x, y))?;
+    let (seconds, fit) = timed(|| ArdRvm::default().fit(x, y))?;
     let prediction = fit.model.predict(problem.test_x.as_ref())?;
     Ok(Outcome {
         rmse: problem.rmse(prediction.as_ref()),

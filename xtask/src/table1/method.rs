@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use phalanx::Regressor;
-use phalanx_rvm::{Bridges, Cascade, ForwardSelection, Kernel, KernelRidge, Stop, Tipping};
+use phalanx_rvm::{Bridges, Cascade, ForwardSelection, Kernel, KernelRidge, Stop, RelevanceVectorMachine};
 
 /// How many columns each of the paper's methods keeps.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -101,7 +101,7 @@ impl Method {
                 ..ForwardSelection::default()
             }),
             Self::TippingLin => {
-                Regressor::Tipping(Tipping { kernel: Kernel::Linear, ..Tipping::default() })
+                Regressor::Tipping(RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() })
             }
             Self::KernelRidge => Regressor::KernelRidge(KernelRidge::default()),
             Self::Knn5 => return None,

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use phalanx::{Error, OrientationRule, Progress, Regressor, Silent, Training};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, Side};
-use phalanx_rvm::{Bridges, Cascade, ForwardSelection, Kernel, Ridge, Stop, Tipping};
+use phalanx_rvm::{Bridges, Cascade, ForwardSelection, Kernel, Ridge, Stop, RelevanceVectorMachine};
 
 use crate::desk::{ESTIMATOR, difference_deg, estimate, masks, poses, rig, top, training, unseen};
 
@@ -38,7 +38,7 @@ fn every_regressor_learns() {
             ..Cascade::default()
         }),
         Regressor::Forward(ForwardSelection { count: 20, ..ForwardSelection::default() }),
-        Regressor::Tipping(Tipping { kernel: Kernel::Linear, ..Tipping::default() }),
+        Regressor::Tipping(RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() }),
     ];
     for regressor in regressors {
         let name = format!("{regressor:?}");

@@ -22,12 +22,12 @@ use crate::model::parts::{Basis, ModelParts};
 /// or of a single sample, no deviation can be known: it is infinite, never 0.
 ///
 /// ```
-/// use phalanx_rvm::{Model, Scratch, Tipping, faer::Mat};
+/// use phalanx_rvm::{Model, Scratch, RelevanceVectorMachine, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(2, 60, |i, t| ((t * (3 + i)) as f64 * 0.618).fract());
 /// let y = Mat::from_fn(1, 60, |_, t| (x[(0, t)] - x[(1, t)]).exp());
-/// let model = Tipping::default().fit(x.as_ref(), y.as_ref())?.model;
+/// let model = RelevanceVectorMachine::default().fit(x.as_ref(), y.as_ref())?.model;
 ///
 /// // One sample, without allocating anything from the second on.
 /// let mut scratch = Scratch::default();

@@ -24,13 +24,13 @@ use crate::model::scratch::Scratch;
 /// much as with Gaussians on all of them.
 ///
 /// ```
-/// use phalanx_rvm::{Healed, Tipping, faer::Mat};
+/// use phalanx_rvm::{AugmentedRvm, RelevanceVectorMachine, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(1, 60, |_, t| t as f64 / 10.0); // from 0 to 6
 /// let y = Mat::from_fn(1, 60, |_, t| x[(0, t)].sin() + 0.1 * (9.0 * t as f64).sin());
-/// let model = Tipping::default().fit(x.as_ref(), y.as_ref())?.model;
-/// let healed = Healed::new(model, x.as_ref(), y.as_ref())?;
+/// let model = RelevanceVectorMachine::default().fit(x.as_ref(), y.as_ref())?.model;
+/// let healed = AugmentedRvm::new(model, x.as_ref(), y.as_ref())?;
 ///
 /// let asked = Mat::from_fn(1, 2, |_, t| [3.0, 30.0][t]); // among the samples, and far from them
 /// let (_, plain) = healed.model().predict_with_std(asked.as_ref())?;
@@ -41,7 +41,7 @@ use crate::model::scratch::Scratch;
 /// # }
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Healed {
+pub struct AugmentedRvm {
     model: Model,
     /// Standardised features of the training samples, features×n.
     z: Mat<f64>,
@@ -51,7 +51,7 @@ pub struct Healed {
     variance: Vec<f64>,
 }
 
-impl Healed {
+impl AugmentedRvm {
     /// Heals a model of the samples that it was fitted to: X (K×I) and Y (m×I). The model must
     /// have Gaussians and a posterior over weights, as all sparse ones have; kernel ridge's own
     /// deviation grows already.
@@ -105,7 +105,7 @@ impl Healed {
     }
 }
 
-impl Regressor for Healed {
+impl Regressor for AugmentedRvm {
     fn inputs(&self) -> usize {
         self.model.inputs()
     }

@@ -23,19 +23,19 @@ use crate::stream::summed::Summed;
 /// column's precision, so that all of them keep the same few columns, and the weights' prior is
 /// relative to each target's noise, so that they share the posterior covariance too.
 ///
-/// It is climbed as [`Tipping`](crate::Tipping) is: each step adds, re-estimates or deletes the one
+/// It is climbed as [`RelevanceVectorMachine`](crate::RelevanceVectorMachine) is: each step adds, re-estimates or deletes the one
 /// column that raises the evidence of all targets together the most, by rank-one updates that all
 /// targets share, or gives every target the noise at which the evidence is greatest. The trace holds
-/// the log evidence of all standardised targets that vary, as `Tipping`'s do. An unpenalised bias
+/// the log evidence of all standardised targets that vary, as `RelevanceVectorMachine`'s do. An unpenalised bias
 /// stands beside the columns.
 ///
 /// ```
-/// use phalanx_rvm::{MultivariateRvm, faer::Mat};
+/// use phalanx_rvm::{MultiOutputRvm, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(1, 80, |_, t| t as f64 / 20.0);
 /// let y = Mat::from_fn(3, 80, |j, t| (x[(0, t)] * (j + 1) as f64).sin());
-/// let rvm = MultivariateRvm { most: Some(12), ..MultivariateRvm::default() };
+/// let rvm = MultiOutputRvm { most: Some(12), ..MultiOutputRvm::default() };
 /// let model = rvm.fit(x.as_ref(), y.as_ref())?.model;
 /// assert!(model.kept_samples().len() <= 12, "shared by the three targets");
 /// assert_eq!(model.weights().shape(), (3, model.kept_samples().len()));
@@ -44,7 +44,7 @@ use crate::stream::summed::Summed;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct MultivariateRvm {
+pub struct MultiOutputRvm {
     /// Basis columns.
     pub kernel: Kernel,
     /// Most columns to keep, at least 1: with so many none is added until one is deleted. `None`
@@ -65,7 +65,7 @@ pub struct MultivariateRvm {
     pub max_iterations: usize,
 }
 
-impl Default for MultivariateRvm {
+impl Default for MultiOutputRvm {
     fn default() -> Self {
         Self {
             kernel: Kernel::Gaussian(Width::Scatter(1.0)),
@@ -79,7 +79,7 @@ impl Default for MultivariateRvm {
     }
 }
 
-impl MultivariateRvm {
+impl MultiOutputRvm {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
         self.fit_observed(x, y, &|_| ())

@@ -14,7 +14,7 @@ use crate::model::Model;
 use crate::model::cholesky_factor::Factor;
 use crate::model::parts::Posterior;
 use crate::model::report::{Fit, Progress, Report, Trace};
-use crate::rvm::marginal_likelihood::Evidence;
+use crate::rvm::marginal_likelihood::MarginalLikelihood;
 use crate::rvm::marginal_likelihood::ascent::Ascent;
 use crate::rvm::marginal_likelihood::targets::Targets;
 
@@ -30,12 +30,12 @@ use crate::rvm::marginal_likelihood::targets::Targets;
 /// found more; it falls only where a column goes that is not worth its price.
 ///
 /// ```
-/// use phalanx_rvm::{Tipping, faer::Mat};
+/// use phalanx_rvm::{RelevanceVectorMachine, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(1, 100, |_, t| t as f64 / 10.0);
 /// let y = Mat::from_fn(1, 100, |_, t| x[(0, t)].sin());
-/// let fit = Tipping::default().fit(x.as_ref(), y.as_ref())?;
+/// let fit = RelevanceVectorMachine::default().fit(x.as_ref(), y.as_ref())?;
 /// assert!(fit.report.traces[0].converged);
 /// assert!(fit.model.kept_samples().len() < 20, "of 100");
 /// # Ok(())
@@ -43,7 +43,7 @@ use crate::rvm::marginal_likelihood::targets::Targets;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Tipping {
+pub struct RelevanceVectorMachine {
     /// Basis columns.
     pub kernel: Kernel,
     /// Least noise variance, as a share of the target's variance, in (0, 1]: data without noise
@@ -61,7 +61,7 @@ pub struct Tipping {
     pub max_iterations: usize,
 }
 
-impl Default for Tipping {
+impl Default for RelevanceVectorMachine {
     fn default() -> Self {
         Self {
             kernel: Kernel::Gaussian(Width::Scatter(3.0)),
@@ -74,7 +74,7 @@ impl Default for Tipping {
     }
 }
 
-impl Tipping {
+impl RelevanceVectorMachine {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
         self.fit_observed(x, y, &|_| ())
@@ -93,13 +93,13 @@ impl Tipping {
     ///
     /// ```
     /// use std::sync::atomic::{AtomicUsize, Ordering};
-    /// use phalanx_rvm::{Tipping, faer::Mat};
+    /// use phalanx_rvm::{RelevanceVectorMachine, faer::Mat};
     ///
     /// # fn main() -> phalanx_rvm::Result<()> {
     /// let x = Mat::from_fn(1, 50, |_, t| t as f64 / 5.0);
     /// let y = Mat::from_fn(1, 50, |_, t| x[(0, t)].sin());
     /// let most = AtomicUsize::new(0);
-    /// Tipping::default().fit_observed(x.as_ref(), y.as_ref(), &|progress| {
+    /// RelevanceVectorMachine::default().fit_observed(x.as_ref(), y.as_ref(), &|progress| {
     ///     most.fetch_max(progress.vectors, Ordering::Relaxed);
     /// })?;
     /// assert!(most.into_inner() > 0);
@@ -164,7 +164,7 @@ impl Row {
         Self { weights: Vec::new(), noise: 0.0, factor }
     }
 
-    fn new(evidence: Evidence<'_>) -> Result<Self> {
+    fn new(evidence: MarginalLikelihood<'_>) -> Result<Self> {
         let noise = evidence.noise()[0].sqrt();
         let (active, weights, factor) = evidence.into_posterior()?;
         let weights = weights.col_as_slice(0).to_vec();

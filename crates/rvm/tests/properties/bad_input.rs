@@ -2,8 +2,8 @@
 
 use faer::Mat;
 use phalanx_rvm::{
-    Bridges, Cascade, Error, ForwardSelection, Kernel, KernelRidge, Lambda, LearntWidths,
-    MultivariateRvm, Nystrom, Penalty, ProblemSize, Regressor, Ridge, Standardiser, Stop, Tipping,
+    Bridges, Cascade, Error, ForwardSelection, Kernel, KernelRidge, Lambda, ArdRvm,
+    MultiOutputRvm, Nystrom, Penalty, ProblemSize, Regressor, Ridge, Standardiser, Stop, RelevanceVectorMachine,
     Width,
 };
 use proptest::prelude::*;
@@ -102,8 +102,8 @@ fn hyper_parameters_out_of_range_are_named() {
     let (x, y) = (x.as_ref(), y.as_ref());
     let bridges = Bridges::default();
     let forward = ForwardSelection::default();
-    let tipping = Tipping::default();
-    let shared = MultivariateRvm::default();
+    let tipping = RelevanceVectorMachine::default();
+    let shared = MultiOutputRvm::default();
     let name = |result: phalanx_rvm::Result<phalanx_rvm::Fit>| match result.unwrap_err() {
         Error::Parameter { name, .. } => name,
         other => panic!("{other}"),
@@ -115,13 +115,13 @@ fn hyper_parameters_out_of_range_are_named() {
         assert_eq!(name(Bridges { tolerance: bad, ..bridges }.fit(x, y)), "tolerance");
         assert_eq!(name(Cascade { nu: bad, ..Cascade::default() }.fit(x, y)), "nu");
         assert_eq!(name(ForwardSelection { lambda: bad, ..forward }.fit(x, y)), "lambda");
-        assert_eq!(name(Tipping { tolerance: bad, ..tipping }.fit(x, y)), "tolerance");
-        assert_eq!(name(Tipping { noise_floor: bad, ..tipping }.fit(x, y)), "noise_floor");
+        assert_eq!(name(RelevanceVectorMachine { tolerance: bad, ..tipping }.fit(x, y)), "tolerance");
+        assert_eq!(name(RelevanceVectorMachine { noise_floor: bad, ..tipping }.fit(x, y)), "noise_floor");
         if bad != 0.0 {
-            assert_eq!(name(Tipping { price: bad, ..tipping }.fit(x, y)), "price");
+            assert_eq!(name(RelevanceVectorMachine { price: bad, ..tipping }.fit(x, y)), "price");
         }
-        assert_eq!(name(MultivariateRvm { tolerance: bad, ..shared }.fit(x, y)), "tolerance");
-        assert_eq!(name(MultivariateRvm { noise_floor: bad, ..shared }.fit(x, y)), "noise_floor");
+        assert_eq!(name(MultiOutputRvm { tolerance: bad, ..shared }.fit(x, y)), "tolerance");
+        assert_eq!(name(MultiOutputRvm { noise_floor: bad, ..shared }.fit(x, y)), "noise_floor");
         let lambda = Lambda::LeaveOneOut(vec![1.0, bad]);
         assert_eq!(name(KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y)), "lambda");
         let penalty = Penalty::CrossValidated(vec![1.0, bad]);
@@ -130,11 +130,11 @@ fn hyper_parameters_out_of_range_are_named() {
         assert_eq!(name(Bridges { kernel, ..bridges }.fit(x, y)), "c");
     }
     let kernel = Kernel::Gaussian(Width::Beta(0.0));
-    assert_eq!(name(Tipping { kernel, ..tipping }.fit(x, y)), "beta");
+    assert_eq!(name(RelevanceVectorMachine { kernel, ..tipping }.fit(x, y)), "beta");
     assert_eq!(name(Bridges { stop: Stop::Threshold(-1.0), ..bridges }.fit(x, y)), "threshold");
     assert_eq!(name(Bridges { max_iterations: 0, ..bridges }.fit(x, y)), "max_iterations");
-    assert_eq!(name(Tipping { max_iterations: 0, ..tipping }.fit(x, y)), "max_iterations");
-    assert_eq!(name(MultivariateRvm { most: Some(0), ..shared }.fit(x, y)), "most");
+    assert_eq!(name(RelevanceVectorMachine { max_iterations: 0, ..tipping }.fit(x, y)), "max_iterations");
+    assert_eq!(name(MultiOutputRvm { most: Some(0), ..shared }.fit(x, y)), "most");
     let lambda = Lambda::LeaveOneOut(Vec::new());
     let error = KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y).unwrap_err();
     assert!(matches!(error, Error::Empty { .. }));
@@ -162,9 +162,9 @@ fn sizes_are_refused_beforehand() {
     let limit = 10_000;
     let too_many = Err(Error::TooManyColumns { columns: samples, limit });
     assert_eq!(KernelRidge::default().check(size), too_many);
-    assert_eq!(Tipping::default().check(size), too_many);
-    assert_eq!(MultivariateRvm::default().check(size), too_many);
-    assert_eq!(LearntWidths::default().check(size), too_many);
+    assert_eq!(RelevanceVectorMachine::default().check(size), too_many);
+    assert_eq!(MultiOutputRvm::default().check(size), too_many);
+    assert_eq!(ArdRvm::default().check(size), too_many);
     assert_eq!(Bridges::default().check(size), too_many);
     assert_eq!(ForwardSelection::default().check(size), too_many);
     assert_eq!(Cascade::default().check(size), too_many);
@@ -190,9 +190,9 @@ fn too_few_steps_are_reported_and_not_refused() {
     let bridges = Bridges { max_iterations: 1, ..Bridges::default() }.fit(x, y).unwrap();
     assert!(!bridges.report.converged && bridges.report.iterations == 1);
     assert_eq!(bridges.report.penalty, Some(Bridges::default().nu));
-    let tipping = Tipping { max_iterations: 1, ..Tipping::default() }.fit(x, y).unwrap();
+    let tipping = RelevanceVectorMachine { max_iterations: 1, ..RelevanceVectorMachine::default() }.fit(x, y).unwrap();
     assert!(!tipping.report.converged && tipping.report.iterations == 2);
-    let shared = MultivariateRvm { max_iterations: 1, ..MultivariateRvm::default() };
+    let shared = MultiOutputRvm { max_iterations: 1, ..MultiOutputRvm::default() };
     let shared = shared.fit(x, y).unwrap();
     assert!(!shared.report.converged && shared.report.iterations == 1);
 }

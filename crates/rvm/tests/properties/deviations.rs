@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    ConditionalDensity, Deviation, Healed, Model, Nystrom, Perceptron, Regressor, Scratch, Tipping,
+    ConditionalDensity, Deviation, AugmentedRvm, Model, Nystrom, Perceptron, Regressor, Scratch, RelevanceVectorMachine,
 };
 use proptest::prelude::*;
 
@@ -64,8 +64,8 @@ proptest! {
 fn an_augmented_machine_knows_none_either() {
     let (x, mut y) = smooth(3, 2, 2, 40);
     y.row_mut(1).fill(0.25);
-    let model = Tipping::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
-    let healed = Healed::new(model, x.as_ref(), y.as_ref()).unwrap();
+    let model = RelevanceVectorMachine::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
+    let healed = AugmentedRvm::new(model, x.as_ref(), y.as_ref()).unwrap();
     let (_, std) = healed.predict_with_std(x.as_ref()).unwrap();
     assert!(std.row(1).iter().all(|&v| v == f64::INFINITY));
     assert!(std.row(0).iter().all(|&v| v > 0.0 && v.is_finite()));

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use faer::Mat;
-use phalanx_rvm::{Error, Kernel, Model, MultivariateRvm, Regressor, Ridge, Tipping};
+use phalanx_rvm::{Error, Kernel, Model, MultiOutputRvm, Regressor, Ridge, RelevanceVectorMachine};
 
 use crate::problems::{close, smooth};
 
@@ -12,11 +12,11 @@ use crate::problems::{close, smooth};
 fn models() -> (Mat<f64>, Vec<Model>) {
     let (x, y) = smooth(11, 5, 2, 40);
     let (x, y) = (x.as_ref(), y.as_ref());
-    let pruned = Tipping { price: 1e9, ..Tipping::default() };
+    let pruned = RelevanceVectorMachine { price: 1e9, ..RelevanceVectorMachine::default() };
     let fits = [
         Ridge { kernel: Kernel::Linear, ..Ridge::default() }.fit(x, y),
-        MultivariateRvm::default().fit(x, y),
-        Tipping::default().fit(x, y),
+        MultiOutputRvm::default().fit(x, y),
+        RelevanceVectorMachine::default().fit(x, y),
         pruned.fit(x, y),
     ];
     (x.to_owned(), fits.into_iter().map(|fit| fit.unwrap().model).collect())

@@ -3,8 +3,8 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use phalanx_rvm::{
-    Basis, Error, Healed, KernelRidge, MultivariateRvm, Posterior, Regressor, Ridge, Standardiser,
-    Tipping,
+    Basis, Error, AugmentedRvm, KernelRidge, MultiOutputRvm, Posterior, Regressor, Ridge, Standardiser,
+    RelevanceVectorMachine,
 };
 use proptest::prelude::*;
 
@@ -18,9 +18,9 @@ proptest! {
     #[test]
     fn the_variance_is_that_of_the_augmented_machine(seed in any::<u64>()) {
         let (x, y) = smooth(seed, 3, 2, 30);
-        let model = MultivariateRvm::default().fit(x.as_ref(), y.as_ref())?.model;
+        let model = MultiOutputRvm::default().fit(x.as_ref(), y.as_ref())?.model;
         let at = Mat::from_fn(3, 1, |i, _| 0.3 * i as f64 - 0.2);
-        let (_, std) = Healed::new(model.clone(), x.as_ref(), y.as_ref())?.predict_with_std(at.as_ref())?;
+        let (_, std) = AugmentedRvm::new(model.clone(), x.as_ref(), y.as_ref())?.predict_with_std(at.as_ref())?;
         let parts = model.parts();
         let (Basis::Gaussian { beta, centres, samples }, Posterior::Weights(factors)) = (&parts.basis, &parts.posterior) else {
             return Err(TestCaseError::fail("not sparse"));
@@ -65,9 +65,9 @@ proptest! {
     #[test]
     fn it_is_never_surer_than_the_plain_one_and_far_away_as_unsure_as_the_target(seed in any::<u64>()) {
         let (x, y) = smooth(seed, 3, 2, 50);
-        let model = Tipping { restarts: 0, ..Tipping::default() }.fit(x.as_ref(), y.as_ref())?.model;
+        let model = RelevanceVectorMachine { restarts: 0, ..RelevanceVectorMachine::default() }.fit(x.as_ref(), y.as_ref())?.model;
         prop_assume!(!model.kept_samples().is_empty());
-        let healed = Healed::new(model.clone(), x.as_ref(), y.as_ref())?;
+        let healed = AugmentedRvm::new(model.clone(), x.as_ref(), y.as_ref())?;
         let (plain_mean, plain) = model.predict_with_std(x.as_ref())?;
         let (mean, std) = healed.predict_with_std(x.as_ref())?;
         prop_assert_eq!(plain_mean, mean);
@@ -88,6 +88,6 @@ fn what_cannot_be_healed_is_named() {
     let (x, y) = smooth(2, 3, 2, 20);
     let (x, y) = (x.as_ref(), y.as_ref());
     for fit in [Ridge::default().fit(x, y), KernelRidge::default().fit(x, y)] {
-        assert_eq!(Healed::new(fit.unwrap().model, x, y).unwrap_err(), Error::NotSparse);
+        assert_eq!(AugmentedRvm::new(fit.unwrap().model, x, y).unwrap_err(), Error::NotSparse);
     }
 }

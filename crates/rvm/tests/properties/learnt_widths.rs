@@ -1,7 +1,7 @@
 //! Learnt widths from outside: their evidence, and what they find irrelevant.
 
 use faer::Mat;
-use phalanx_rvm::{Error, Kernel, LearntWidths, MultivariateRvm, Tie};
+use phalanx_rvm::{Error, Kernel, ArdRvm, MultiOutputRvm, LengthScales};
 use proptest::prelude::*;
 
 use crate::problems::{Source, smooth};
@@ -13,9 +13,9 @@ proptest! {
     #[test]
     fn the_evidence_never_falls(seed in any::<u64>(), tie in 0..3) {
         let (x, y) = smooth(seed, 4, 2, 40);
-        let tie = [Tie::All, Tie::None, Tie::Blocks(vec![1, 3])][tie as usize].clone();
-        let rvm = MultivariateRvm { price: 0.0, ..MultivariateRvm::default() };
-        let fit = LearntWidths { rvm, tie, ..LearntWidths::default() }.fit(x.as_ref(), y.as_ref())?;
+        let tie = [LengthScales::All, LengthScales::None, LengthScales::Blocks(vec![1, 3])][tie as usize].clone();
+        let rvm = MultiOutputRvm { price: 0.0, ..MultiOutputRvm::default() };
+        let fit = ArdRvm { rvm, tie, ..ArdRvm::default() }.fit(x.as_ref(), y.as_ref())?;
         let evidence = &fit.report.traces[0].objective;
         prop_assert!(evidence.is_sorted_by(|a, b| *b >= a - 1e-6 * a.abs().max(1.0)), "{evidence:?}");
         let fixed = rvm.fit(x.as_ref(), y.as_ref())?.report.traces[0].objective.last().copied();
@@ -36,7 +36,7 @@ fn two_of_six(samples: usize) -> (Mat<f64>, Mat<f64>) {
 #[test]
 fn inputs_that_say_nothing_get_long_scales() {
     let (x, y) = two_of_six(200);
-    let model = LearntWidths::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
+    let model = ArdRvm::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
     let scales = model.length_scales().unwrap();
     let of = |input: usize| {
         let place = model.selected_features().iter().position(|&f| f == input);
@@ -47,19 +47,19 @@ fn inputs_that_say_nothing_get_long_scales() {
         assert!(of(nothing) > 5.0 * of(4), "{scales:?}");
     }
     // And that is what fewer vectors and smaller errors come from.
-    let fixed = MultivariateRvm::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
+    let fixed = MultiOutputRvm::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
     assert!(2 * model.kept_samples().len() < fixed.kept_samples().len());
 }
 
 #[test]
 fn what_cannot_be_learnt_is_named() {
     let (x, y) = two_of_six(20);
-    let linear = MultivariateRvm { kernel: Kernel::Linear, ..MultivariateRvm::default() };
-    let learn = |learnt: LearntWidths| learnt.fit(x.as_ref(), y.as_ref()).unwrap_err();
-    assert_eq!(learn(LearntWidths { rvm: linear, ..LearntWidths::default() }), Error::NoWidth);
-    let blocks = Tie::Blocks(vec![2, 3]);
-    let error = learn(LearntWidths { tie: blocks, ..LearntWidths::default() });
+    let linear = MultiOutputRvm { kernel: Kernel::Linear, ..MultiOutputRvm::default() };
+    let learn = |learnt: ArdRvm| learnt.fit(x.as_ref(), y.as_ref()).unwrap_err();
+    assert_eq!(learn(ArdRvm { rvm: linear, ..ArdRvm::default() }), Error::NoWidth);
+    let blocks = LengthScales::Blocks(vec![2, 3]);
+    let error = learn(ArdRvm { tie: blocks, ..ArdRvm::default() });
     assert_eq!(error, Error::Shape { what: "inputs of all blocks", expected: 6, found: 5 });
-    let error = learn(LearntWidths { rounds: 0, ..LearntWidths::default() });
+    let error = learn(ArdRvm { rounds: 0, ..ArdRvm::default() });
     assert!(matches!(error, Error::Parameter { name: "max_iterations", .. }));
 }

@@ -4,7 +4,7 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Columns, Kernel, MultivariateRvm, Pilot, Regressor, Standardiser, Sums, Tipping, Width,
+    Columns, Kernel, MultiOutputRvm, Pilot, Regressor, Standardiser, Sums, RelevanceVectorMachine, Width,
 };
 use proptest::prelude::*;
 
@@ -106,7 +106,7 @@ proptest! {
         let (x, y) = smooth(seed, 7, 3, 20);
         let mut slow = Slow::new(x.as_ref(), y.as_ref())?;
         let rvm =
-            MultivariateRvm { kernel: Kernel::Linear, price: 0.0, ..MultivariateRvm::default() };
+            MultiOutputRvm { kernel: Kernel::Linear, price: 0.0, ..MultiOutputRvm::default() };
         let fit = rvm.fit(x.as_ref(), y.as_ref())?;
         for &fast in &fit.report.traces[0].objective {
             let evidence = slow.climb(rvm.tolerance);
@@ -122,7 +122,7 @@ proptest! {
     fn the_evidence_never_falls(seed in any::<u64>(), most in prop::option::of(1..10_usize)) {
         let (x, y) = smooth(seed, 5, 3, 60);
         let (price, restarts) = (0.0, 4);
-        let rvm = MultivariateRvm { kernel: GAUSSIAN, most, price, restarts, ..Default::default() };
+        let rvm = MultiOutputRvm { kernel: GAUSSIAN, most, price, restarts, ..Default::default() };
         let fit = rvm.fit(x.as_ref(), y.as_ref())?;
         prop_assert!(fit.report.converged);
         prop_assert!(fit.model.kept_samples().len() <= most.unwrap_or(60));
@@ -136,8 +136,8 @@ proptest! {
     fn of_one_target_it_is_tippings(seed in any::<u64>()) {
         let (x, y) = smooth(seed, 4, 1, 40);
         let restarts = 3;
-        let one = MultivariateRvm { kernel: GAUSSIAN, restarts, ..MultivariateRvm::default() };
-        let tipping = Tipping { kernel: GAUSSIAN, restarts, ..Tipping::default() };
+        let one = MultiOutputRvm { kernel: GAUSSIAN, restarts, ..MultiOutputRvm::default() };
+        let tipping = RelevanceVectorMachine { kernel: GAUSSIAN, restarts, ..RelevanceVectorMachine::default() };
         let (one, tipping) = (one.fit(x.as_ref(), y.as_ref())?, tipping.fit(x.as_ref(), y.as_ref())?);
         prop_assert_eq!(one, tipping);
     }
@@ -146,10 +146,10 @@ proptest! {
     fn a_target_given_twice_changes_no_prediction(seed in any::<u64>()) {
         let (x, y) = smooth(seed, 4, 2, 40);
         let twice = rows(y.as_ref(), &[0, 1, 0, 1]);
-        let rvm = MultivariateRvm { kernel: Kernel::Linear, ..MultivariateRvm::default() };
+        let rvm = MultiOutputRvm { kernel: Kernel::Linear, ..MultiOutputRvm::default() };
         // Twice the evidence asks for twice the tolerance and the price.
         let (tolerance, price) = (2.0 * rvm.tolerance, 2.0 * rvm.price);
-        let doubled = MultivariateRvm { tolerance, price, ..rvm };
+        let doubled = MultiOutputRvm { tolerance, price, ..rvm };
         let (mean, std) = rvm.fit(x.as_ref(), y.as_ref())?.model.predict_with_std(x.as_ref())?;
         let again = doubled.fit(x.as_ref(), twice.as_ref())?.model;
         let (mean_again, std_again) = again.predict_with_std(x.as_ref())?;
@@ -164,7 +164,7 @@ proptest! {
         let x = Mat::from_fn(2, 60, |i, t| half[(i, t % 30)]);
         let y = Mat::from_fn(2, 60, |j, t| (3.0 * x[(j, t)]).sin() * x[(1 - j, t)]);
         let kernel = Kernel::Gaussian(Width::Scatter(c));
-        let rvm = MultivariateRvm { kernel, ..MultivariateRvm::default() };
+        let rvm = MultiOutputRvm { kernel, ..MultiOutputRvm::default() };
         let model = rvm.fit(x.as_ref(), y.as_ref())?.model;
         let (mean, std) = model.predict_with_std(x.as_ref())?;
         prop_assert!(mean.norm_max().is_finite() && std.norm_max().is_finite());
@@ -173,7 +173,7 @@ proptest! {
     #[test]
     fn sums_give_the_fit_in_memory(seed in any::<u64>()) {
         let (x, y) = smooth(seed, 6, 3, 50);
-        let rvm = MultivariateRvm { kernel: Kernel::Linear, ..MultivariateRvm::default() };
+        let rvm = MultiOutputRvm { kernel: Kernel::Linear, ..MultiOutputRvm::default() };
         let all: Vec<usize> = (0..50).collect();
         let pilot = Pilot { x: x.as_ref(), y: y.as_ref(), samples: &all };
         let columns = Columns::new(&pilot, Kernel::Linear)?;
@@ -192,7 +192,7 @@ fn inputs_that_say_nothing_are_dropped_and_the_others_shared() {
     let y = Mat::from_fn(4, 300, |j, t| {
         2.0 * x[(3, t)] + (j as f64 - 1.5) * x[(17, t)] + 0.5 * source.uniform()
     });
-    let rvm = MultivariateRvm { kernel: Kernel::Linear, ..MultivariateRvm::default() };
+    let rvm = MultiOutputRvm { kernel: Kernel::Linear, ..MultiOutputRvm::default() };
     let model = rvm.fit(x.as_ref(), y.as_ref()).unwrap().model;
     let kept = model.selected_features();
     assert!(kept.contains(&3) && kept.contains(&17) && kept.len() <= 16, "{kept:?}");

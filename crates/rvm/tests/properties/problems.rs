@@ -2,8 +2,8 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Bridges, Cascade, Fit, ForwardSelection, Kernel, KernelRidge, LearntWidths, MultivariateRvm,
-    Nystrom, Result, Ridge, Stop, Tipping, Width,
+    Bridges, Cascade, Fit, ForwardSelection, Kernel, KernelRidge, ArdRvm, MultiOutputRvm,
+    Nystrom, Result, Ridge, Stop, RelevanceVectorMachine, Width,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -18,13 +18,13 @@ pub(crate) const FITTERS: [(&str, Fitter); 13] = [
     ("ridge, Gaussian", |x, y| Ridge { kernel: GAUSSIAN, lambda: 0.1 }.fit(x, y)),
     ("bridges, linear", |x, y| Bridges { kernel: Kernel::Linear, ..Bridges::default() }.fit(x, y)),
     ("bridges, Gaussian", |x, y| Bridges::default().fit(x, y)),
-    ("Tipping, linear", |x, y| Tipping { kernel: Kernel::Linear, ..Tipping::default() }.fit(x, y)),
-    ("Tipping, Gaussian", |x, y| Tipping::default().fit(x, y)),
+    ("Tipping, linear", |x, y| RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() }.fit(x, y)),
+    ("Tipping, Gaussian", |x, y| RelevanceVectorMachine::default().fit(x, y)),
     ("multivariate RVM, linear", |x, y| {
-        MultivariateRvm { kernel: Kernel::Linear, ..MultivariateRvm::default() }.fit(x, y)
+        MultiOutputRvm { kernel: Kernel::Linear, ..MultiOutputRvm::default() }.fit(x, y)
     }),
-    ("multivariate RVM, Gaussian", |x, y| MultivariateRvm::default().fit(x, y)),
-    ("learnt widths", |x, y| LearntWidths { rounds: 3, ..LearntWidths::default() }.fit(x, y)),
+    ("multivariate RVM, Gaussian", |x, y| MultiOutputRvm::default().fit(x, y)),
+    ("learnt widths", |x, y| ArdRvm { rounds: 3, ..ArdRvm::default() }.fit(x, y)),
     ("kernel ridge", |x, y| KernelRidge::default().fit(x, y)),
     ("Nyström", |x, y| Nystrom::default().fit(x, y)),
     ("forward", |x, y| {

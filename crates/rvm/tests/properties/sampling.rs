@@ -3,8 +3,8 @@
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
     Block, Bridges, Cascade, Columns, Error, ForwardSelection, GradientMetric, Kernel, KernelRidge,
-    LearntWidths, Model, MultivariateRvm, Nystrom, Perceptron, Pilot, Projected, Regressor, Result,
-    Ridge, Stop, Sums, Tipping, Width, random_subset,
+    ArdRvm, Model, MultiOutputRvm, Nystrom, Perceptron, Pilot, Projected, Regressor, Result,
+    Ridge, Stop, Sums, RelevanceVectorMachine, Width, random_subset,
 };
 
 use crate::problems::{GAUSSIAN, Source, columns};
@@ -146,7 +146,7 @@ fn forward_selection() {
 
 #[test]
 fn multivariate_rvm() {
-    let rvm = MultivariateRvm { most: Some(30), ..MultivariateRvm::default() };
+    let rvm = MultiOutputRvm { most: Some(30), ..MultiOutputRvm::default() };
     streamed(rvm.kernel, |columns, sums| rvm.fit_sums(columns, sums));
 }
 
@@ -222,13 +222,13 @@ fn kernel_ridge() {
 
 #[test]
 fn tipping() {
-    let tipping = Tipping { restarts: 0, ..Tipping::default() };
+    let tipping = RelevanceVectorMachine { restarts: 0, ..RelevanceVectorMachine::default() };
     alike(&FEW_ROWS, |x, y| of_model(&tipping.fit(x.as_ref(), y.as_ref()).unwrap().model));
 }
 
 #[test]
 fn learnt_widths() {
-    let widths = LearntWidths { rounds: 3, ..LearntWidths::default() };
+    let widths = ArdRvm { rounds: 3, ..ArdRvm::default() };
     alike(&FEW_ROWS, |x, y| of_model(&widths.fit(x.as_ref(), y.as_ref()).unwrap().model));
 }
 

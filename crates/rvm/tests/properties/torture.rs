@@ -1,7 +1,7 @@
 //! Data at the edge of what numbers can hold: an answer as good as they allow, or an error by name.
 
 use faer::{Mat, MatRef};
-use phalanx_rvm::{Error, Healed, Model, Regressor};
+use phalanx_rvm::{Error, AugmentedRvm, Model, Regressor};
 use proptest::prelude::*;
 
 use crate::problems::{FITTERS, Source, smooth};
@@ -88,7 +88,7 @@ proptest! {
                     prop_assert!(sound(&fit.model, x.as_ref()), "{name}");
                     let far = Mat::from_fn(3, 2, |i, t| 1e6 * (i as f64 - t as f64));
                     prop_assert!(sound(&fit.model, far.as_ref()), "{name}");
-                    if let Ok(healed) = Healed::new(fit.model, x.as_ref(), y.as_ref()) {
+                    if let Ok(healed) = AugmentedRvm::new(fit.model, x.as_ref(), y.as_ref()) {
                         let (_, std) = healed.predict_with_std(far.as_ref())?;
                         prop_assert!(positive(&std), "{name}");
                     }

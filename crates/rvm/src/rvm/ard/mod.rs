@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::model::report::{Fit, Progress, Report, Trace};
 use crate::rvm::ard::evidence::Widths;
 use crate::rvm::ard::lbfgs::Point;
-use crate::rvm::multi_output::{MultivariateRvm, Vectors};
+use crate::rvm::multi_output::{MultiOutputRvm, Vectors};
 
 /// An input whose width is below this share of the greatest is not read: over all the samples it
 /// moves no exponent by as much.
@@ -24,7 +24,7 @@ const IRRELEVANT: f64 = 1e-6;
 /// Which inputs share a width.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Tie {
+pub enum LengthScales {
     /// All of them.
     All,
     /// Each has its own: automatic relevance determination of inputs.
@@ -38,25 +38,25 @@ pub enum Tie {
 /// for blocks of them.
 ///
 /// Two climbs of the same evidence take turns: over the vectors at given widths, as
-/// [`MultivariateRvm`] does; and over the logs of widths and precisions together at given vectors,
+/// [`MultiOutputRvm`] does; and over the logs of widths and precisions together at given vectors,
 /// by L-BFGS with the closed-form gradient. The trace holds the evidence after each turn. Inputs
 /// that the evidence finds irrelevant are no longer read
 /// ([`Model::selected_features`](crate::Model::selected_features)); what is left of the widths
 /// [`Model::length_scales`](crate::Model::length_scales) tells.
 ///
 /// ```
-/// use phalanx_rvm::{LearntWidths, Tie, faer::Mat};
+/// use phalanx_rvm::{ArdRvm, LengthScales, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// // Of three inputs the first matters much, the second little, and the third not at all.
 /// let x = Mat::from_fn(3, 150, |i, t| ((t * (7 + 6 * i)) as f64 * 0.618).fract() * 4.0);
 /// let y = Mat::from_fn(1, 150, |_, t| (2.0 * x[(0, t)]).sin() + 0.3 * x[(1, t)]);
 ///
-/// let each = LearntWidths::default().fit(x.as_ref(), y.as_ref())?; // `Tie::None`
+/// let each = ArdRvm::default().fit(x.as_ref(), y.as_ref())?; // `LengthScales::None`
 /// let scales = each.model.length_scales().expect("Gaussians have them");
 /// assert!(scales[0] < scales[1]);
 ///
-/// let one = LearntWidths { tie: Tie::All, ..LearntWidths::default() };
+/// let one = ArdRvm { tie: LengthScales::All, ..ArdRvm::default() };
 /// let one = one.fit(x.as_ref(), y.as_ref())?;
 /// assert!(each.report.traces[0].objective.last() > one.report.traces[0].objective.last());
 /// # Ok(())
@@ -64,24 +64,24 @@ pub enum Tie {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct LearntWidths {
+pub struct ArdRvm {
     /// The machine; its kernel, which must be Gaussian, is where the widths start.
-    pub rvm: MultivariateRvm,
+    pub rvm: MultiOutputRvm,
     /// Which inputs share a width.
-    pub tie: Tie,
+    pub tie: LengthScales,
     /// Most turns, at least 1.
     pub rounds: usize,
     /// Most steps over the widths in a turn, at least 1.
     pub steps: usize,
 }
 
-impl Default for LearntWidths {
+impl Default for ArdRvm {
     fn default() -> Self {
-        Self { rvm: MultivariateRvm::default(), tie: Tie::None, rounds: 10, steps: 25 }
+        Self { rvm: MultiOutputRvm::default(), tie: LengthScales::None, rounds: 10, steps: 25 }
     }
 }
 
-impl LearntWidths {
+impl ArdRvm {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
         self.fit_observed(x, y, &|_| ())
@@ -145,9 +145,9 @@ impl LearntWidths {
     /// Which width each input has.
     fn ties(&self, inputs: usize) -> Result<Vec<usize>> {
         Ok(match &self.tie {
-            Tie::All => vec![0; inputs],
-            Tie::None => (0..inputs).collect(),
-            Tie::Blocks(blocks) => {
+            LengthScales::All => vec![0; inputs],
+            LengthScales::None => (0..inputs).collect(),
+            LengthScales::Blocks(blocks) => {
                 let of_all = blocks.iter().fold(0_usize, |sum, &block| sum.saturating_add(block));
                 check::length("inputs of all blocks", inputs, of_all)?;
                 let of_block = |(tie, &size): (usize, &usize)| std::iter::repeat_n(tie, size);
@@ -172,7 +172,7 @@ impl Learning {
     /// The best vectors at these widths.
     fn climb_vectors(
         &self,
-        rvm: &MultivariateRvm,
+        rvm: &MultiOutputRvm,
         x: MatRef<'_, f64>,
         y: MatRef<'_, f64>,
         observe: &dyn Fn(Progress),
@@ -192,7 +192,7 @@ impl Learning {
     }
 
     /// The best widths for these vectors.
-    fn climb_widths(&mut self, settings: &LearntWidths) -> Result<()> {
+    fn climb_widths(&mut self, settings: &ArdRvm) -> Result<()> {
         let z = crate::linalg::subrows(self.problem.z.as_ref(), &self.inputs);
         let all = &self.problem.y;
         let varying: Vec<usize> =

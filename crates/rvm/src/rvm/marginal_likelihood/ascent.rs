@@ -3,7 +3,7 @@
 use crate::data::check;
 use crate::error::{Error, Result};
 use crate::model::report::{Progress, Trace};
-use crate::rvm::marginal_likelihood::Evidence;
+use crate::rvm::marginal_likelihood::MarginalLikelihood;
 use crate::rvm::marginal_likelihood::targets::Targets;
 
 /// Steps between two computations from scratch, besides one for each active column: then the
@@ -47,8 +47,8 @@ impl Ascent {
     }
 
     /// No column is active.
-    pub(crate) fn start<'a>(&self, targets: Targets<'a>) -> Result<Evidence<'a>> {
-        Evidence::new(targets, self.noise_floor, self.most, self.price)
+    pub(crate) fn start<'a>(&self, targets: Targets<'a>) -> Result<MarginalLikelihood<'a>> {
+        MarginalLikelihood::new(targets, self.noise_floor, self.most, self.price)
     }
 
     /// Climbs from where it is put, and then again from the best so far without some neighbours, which
@@ -56,9 +56,9 @@ impl Ascent {
     /// One column at a time ends where no change of one column gains, of which there are many.
     pub(crate) fn run<'a>(
         &self,
-        mut best: Evidence<'a>,
+        mut best: MarginalLikelihood<'a>,
         observe: &dyn Fn(Progress),
-    ) -> Result<(Evidence<'a>, Trace)> {
+    ) -> Result<(MarginalLikelihood<'a>, Trace)> {
         let (mut objective, mut left) = (Vec::new(), self.max_iterations);
         let mut converged = self.climb(&mut best, &mut left, |progress| {
             objective.push(progress.evidence);
@@ -82,7 +82,7 @@ impl Ascent {
     /// has converged when nothing gains by numbers computed from scratch.
     fn climb(
         &self,
-        evidence: &mut Evidence<'_>,
+        evidence: &mut MarginalLikelihood<'_>,
         left: &mut usize,
         mut observe: impl FnMut(Progress),
     ) -> Result<bool> {
@@ -112,7 +112,7 @@ impl Ascent {
 }
 
 /// An active column and those most correlated with it: another one in every round.
-fn neighbours(evidence: &Evidence<'_>, round: usize) -> Vec<usize> {
+fn neighbours(evidence: &MarginalLikelihood<'_>, round: usize) -> Vec<usize> {
     // By their precisions, so that the order of the samples does not matter.
     let (active, alpha) = evidence.active();
     let mut places: Vec<usize> = (0..active.len()).collect();

@@ -27,7 +27,7 @@ const FIRST_NOISE: f64 = 0.1;
 /// and S while the noise stands apart from both: a new σⱼ² changes neither. For one target this is
 /// Tipping and Faul's own model with α/σ² written for α.
 #[derive(Clone)]
-pub(crate) struct Evidence<'a> {
+pub(crate) struct MarginalLikelihood<'a> {
     targets: Targets<'a>,
     /// Least noise variance.
     floor: f64,
@@ -50,7 +50,7 @@ pub(crate) struct Evidence<'a> {
     stale: usize,
 }
 
-impl<'a> Evidence<'a> {
+impl<'a> MarginalLikelihood<'a> {
     /// Starts with no column active.
     pub(crate) fn new(targets: Targets<'a>, floor: f64, most: usize, price: f64) -> Result<Self> {
         let (p, m) = targets.correlations.shape();

@@ -1,7 +1,7 @@
 //! One change of one hyper-parameter: what it gains, and how it is made.
 
 use crate::linalg;
-use crate::rvm::marginal_likelihood::Evidence;
+use crate::rvm::marginal_likelihood::MarginalLikelihood;
 use crate::rvm::marginal_likelihood::active::New;
 
 /// A column with less than this share of its energy outside the active ones depends on them, and
@@ -36,7 +36,7 @@ struct Worth {
     alpha: f64,
 }
 
-impl Evidence<'_> {
+impl MarginalLikelihood<'_> {
     /// The step that raises the objective the most.
     pub(super) fn best_step(&self) -> Step {
         let noise = Step { change: Change::Noise, gain: self.noise_gain() };

@@ -18,7 +18,7 @@ struct Direct {
 }
 
 impl Direct {
-    fn new(evidence: &Evidence<'_>, phi: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Self {
+    fn new(evidence: &MarginalLikelihood<'_>, phi: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Self {
         let n = phi.nrows();
         let mut c = Mat::<f64>::identity(n, n);
         for (&k, alpha) in evidence.active.columns.iter().zip(&evidence.active.alpha) {
@@ -64,7 +64,7 @@ fn every_step_keeps_what_a_full_recomputation_gives() {
         energies: &energies,
         freedom: n as f64 - 1.0,
     };
-    let mut evidence = Evidence::new(targets, 1e-6, p, 0.0).unwrap();
+    let mut evidence = MarginalLikelihood::new(targets, 1e-6, p, 0.0).unwrap();
     let close = |a: f64, b: f64| (a - b).abs() < 1e-8 * (1.0 + b.abs());
     let (mut added, mut changed, mut deleted) = (0, 0, 0);
     for round in 0..90 {
@@ -114,7 +114,7 @@ fn a_step_gains_what_it_says() {
         energies: &energies,
         freedom: n as f64 - 1.0,
     };
-    let mut evidence = Evidence::new(targets, 1e-6, p, 0.0).unwrap();
+    let mut evidence = MarginalLikelihood::new(targets, 1e-6, p, 0.0).unwrap();
     let (mut columns, mut noises) = (0, 0);
     for _ in 0..40 {
         let (step, before) = (evidence.best_step(), evidence.value());
