@@ -11,7 +11,7 @@ use faer::Mat;
 use phalanx::OrientationRule;
 use phalanx_multiview::Vocabulary;
 use phalanx_rvm::{
-    Bridges, Columns, Fit, ForwardSelection, Kernel, MultiOutputRvm, Nystrom, Pilot, Ridge, Stop,
+    AgarwalTriggs, Columns, Fit, OrthogonalLeastSquares, Kernel, MultiOutputRvm, Nystrom, Pilot, Ridge, Stop,
     Sums, Width, random_subset,
 };
 
@@ -68,12 +68,12 @@ impl Selector {
         let (x, y) = (samples.x.as_ref(), samples.y.as_ref());
         Ok(match self {
             Self::Bridges => {
-                Bridges { kernel: KERNEL, stop: Stop::Count(count), ..Bridges::default() }
+                AgarwalTriggs { kernel: KERNEL, stop: Stop::Count(count), ..AgarwalTriggs::default() }
                     .fit(x, y)?
             }
             Self::Random => on_random_samples(samples, count)?,
             Self::Forward => {
-                ForwardSelection { kernel: KERNEL, count, lambda: LAMBDA, sweeps: 0 }.fit(x, y)?
+                OrthogonalLeastSquares { kernel: KERNEL, count, lambda: LAMBDA, sweeps: 0 }.fit(x, y)?
             }
             Self::MultivariateRvm => {
                 MultiOutputRvm { kernel: KERNEL, most: Some(count), ..MultiOutputRvm::default() }

@@ -11,7 +11,7 @@ use phalanx::{
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_render::{Appearance, Renderer};
-use phalanx_rvm::{Cascade, Stop};
+use phalanx_rvm::{TwoStageSelection, Stop};
 use phalanx_segmentation::SkinModel;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -78,10 +78,10 @@ fn estimate(c: &mut Criterion) {
     let photographs: Vec<Picture> =
         photographs.iter().map(|image| Picture::Photograph(image, &skin)).collect();
     let masks: Vec<Picture> = masks.iter().map(Picture::Mask).collect();
-    let both = Regressor::Cascade(Cascade {
+    let both = Regressor::Cascade(TwoStageSelection {
         features: Stop::Count(34),
         samples: Stop::Count(38),
-        ..Cascade::default()
+        ..TwoStageSelection::default()
     });
     let mut workspace = Workspace::default();
     for (name, regressor) in [("kernel ridge", Training::default().regressor), ("both", both)] {

@@ -23,11 +23,11 @@ pub enum Regressor {
     /// Ridge regression.
     Ridge(Ridge),
     /// Agarwal and Triggs' column-wise quadratic bridges: the paper's "lin" and "gauss".
-    Bridges(Bridges),
+    Bridges(AgarwalTriggs),
     /// Features selected linearly, then samples by Gaussian kernels: the paper's "both".
-    Cascade(Cascade),
+    Cascade(TwoStageSelection),
     /// Orthogonal forward selection over all outputs.
-    Forward(ForwardSelection),
+    Forward(OrthogonalLeastSquares),
     /// Tipping's relevance vector machine, one per output.
     Tipping(RelevanceVectorMachine),
     /// The relevance vector machine whose outputs share their vectors.

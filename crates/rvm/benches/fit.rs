@@ -5,7 +5,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use faer::Mat;
 use phalanx_rvm::{
-    Bridges, ForwardSelection, Kernel, KernelRidge, Regressor, Scratch, Stop, RelevanceVectorMachine, Width,
+    AgarwalTriggs, OrthogonalLeastSquares, Kernel, KernelRidge, Regressor, Scratch, Stop, RelevanceVectorMachine, Width,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -44,12 +44,12 @@ fn fits(c: &mut Criterion) {
     let mut group = c.benchmark_group("fit 837x90 to 24");
     group.sample_size(10);
     for (name, kernel) in [("linear", Kernel::Linear), ("gaussian", gaussian)] {
-        let bridges = Bridges { kernel, stop: Stop::Count(40), ..Bridges::default() };
+        let bridges = AgarwalTriggs { kernel, stop: Stop::Count(40), ..AgarwalTriggs::default() };
         group.bench_function(format!("bridges {name} to 40"), |b| {
             b.iter(|| bridges.fit(black_box(x), y).unwrap());
         });
     }
-    let forward = ForwardSelection { kernel: gaussian, count: 40, ..ForwardSelection::default() };
+    let forward = OrthogonalLeastSquares { kernel: gaussian, count: 40, ..OrthogonalLeastSquares::default() };
     group.bench_function("forward gaussian to 40", |b| {
         b.iter(|| forward.fit(black_box(x), y).unwrap());
     });
@@ -68,7 +68,7 @@ fn predictions(c: &mut Criterion) {
     let (x, y) = data();
     let features = x.as_ref().subrows(0, 32);
     let kernel = Kernel::Gaussian(Width::Scatter(0.3));
-    let forward = ForwardSelection { kernel, count: 38, ..ForwardSelection::default() };
+    let forward = OrthogonalLeastSquares { kernel, count: 38, ..OrthogonalLeastSquares::default() };
     let sparse = forward.fit(features, y.as_ref()).unwrap().model;
     let dense = KernelRidge::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
     let mut scratch = Scratch::default();

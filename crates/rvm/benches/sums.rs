@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use faer::Mat;
-use phalanx_rvm::{Bridges, Columns, ForwardSelection, Kernel, Nystrom, Pilot, Stop, Sums, Width};
+use phalanx_rvm::{AgarwalTriggs, Columns, OrthogonalLeastSquares, Kernel, Nystrom, Pilot, Stop, Sums, Width};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -50,11 +50,11 @@ fn sums(c: &mut Criterion) {
     group.bench_function("Nyström, 6 lambdas", |b| {
         b.iter(|| nystrom.fit_sums(&columns, black_box(&sums)).unwrap());
     });
-    let forward = ForwardSelection { kernel, count: 40, ..ForwardSelection::default() };
+    let forward = OrthogonalLeastSquares { kernel, count: 40, ..OrthogonalLeastSquares::default() };
     group.bench_function("forward to 40", |b| {
         b.iter(|| forward.fit_sums(&columns, black_box(&sums)).unwrap());
     });
-    let bridges = Bridges { kernel, stop: Stop::Count(40), ..Bridges::default() };
+    let bridges = AgarwalTriggs { kernel, stop: Stop::Count(40), ..AgarwalTriggs::default() };
     group.bench_function("bridges to 40", |b| {
         b.iter(|| bridges.fit_sums(&columns, black_box(&sums)).unwrap());
     });

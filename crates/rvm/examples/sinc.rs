@@ -5,7 +5,7 @@
 
 use phalanx_rvm::faer::Mat;
 use phalanx_rvm::{
-    Bridges, Fit, ForwardSelection, Kernel, KernelRidge, Regressor, Result, RelevanceVectorMachine, Width,
+    AgarwalTriggs, Fit, OrthogonalLeastSquares, Kernel, KernelRidge, Regressor, Result, RelevanceVectorMachine, Width,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -30,10 +30,10 @@ fn main() -> Result<()> {
     let kernel = Kernel::Gaussian(width);
     show("Tipping", &RelevanceVectorMachine { kernel, ..RelevanceVectorMachine::default() }.fit(x, y)?)?;
     // One target alone wants a gentler prior than many that agree.
-    show("bridges", &Bridges { kernel, nu: 0.03, ..Bridges::default() }.fit(x, y)?)?;
+    show("bridges", &AgarwalTriggs { kernel, nu: 0.03, ..AgarwalTriggs::default() }.fit(x, y)?)?;
     show(
         "forward",
-        &ForwardSelection { kernel, count: 6, ..ForwardSelection::default() }.fit(x, y)?,
+        &OrthogonalLeastSquares { kernel, count: 6, ..OrthogonalLeastSquares::default() }.fit(x, y)?,
     )?;
     show("kernel ridge", &KernelRidge { width, ..KernelRidge::default() }.fit(x, y)?)
 }

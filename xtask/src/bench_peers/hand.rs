@@ -3,7 +3,7 @@
 use anyhow::Result;
 use phalanx_rvm::faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, Bridges, Columns, ForwardSelection, GradientMetric, Kernel, Model, MultiOutputRvm,
+    Block, AgarwalTriggs, Columns, OrthogonalLeastSquares, GradientMetric, Kernel, Model, MultiOutputRvm,
     Nystrom, Pilot, Projection, Stop, Sums, Width,
 };
 
@@ -98,7 +98,7 @@ pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
     let (x, y) = (problem.x.as_ref(), problem.y.as_ref());
     let gaussian = Kernel::Gaussian(Width::Scatter(0.3));
     for (name, kernel) in [("linear", Kernel::Linear), ("Gaussian", gaussian)] {
-        let bridges = Bridges { kernel, stop: Stop::Count(COUNT), ..Bridges::default() };
+        let bridges = AgarwalTriggs { kernel, stop: Stop::Count(COUNT), ..AgarwalTriggs::default() };
         let fit = || Ok(Made { projection: None, model: bridges.fit(x, y)?.model });
         let ours = measure(&problem, fit)?;
         let row = |figure, unit, ours, target| Row {
@@ -167,8 +167,8 @@ fn in_proportion(
 }
 
 fn forward(columns: &Columns, sums: &Sums, width: Width) -> phalanx_rvm::Result<Model> {
-    let chosen = ForwardSelection { count: MOST, lambda: LAMBDA, ..ForwardSelection::default() };
-    let chosen = ForwardSelection { kernel: Kernel::Gaussian(width), ..chosen };
+    let chosen = OrthogonalLeastSquares { count: MOST, lambda: LAMBDA, ..OrthogonalLeastSquares::default() };
+    let chosen = OrthogonalLeastSquares { kernel: Kernel::Gaussian(width), ..chosen };
     Ok(chosen.fit_sums(columns, sums)?.model)
 }
 

@@ -5,7 +5,7 @@ use faer::Mat;
 use image::{Rgb, RgbImage};
 use phalanx::Describer;
 use phalanx_codebook::{Codebook, Scratch, Voting};
-use phalanx_rvm::{Bridges, Kernel, Stop};
+use phalanx_rvm::{AgarwalTriggs, Kernel, Stop};
 use phalanx_shape_context::BINS;
 use serde_json::json;
 
@@ -143,7 +143,7 @@ fn select(
     split: u64,
 ) -> Result<Selection> {
     let halves = described.halves(views, split)?;
-    let bridges = Bridges { kernel: Kernel::Linear, stop: Stop::Count(keep), ..Bridges::default() };
+    let bridges = AgarwalTriggs { kernel: Kernel::Linear, stop: Stop::Count(keep), ..AgarwalTriggs::default() };
     let fit = bridges.fit(halves.train.x.as_ref(), halves.train.y.as_ref())?;
     let codebooks = halves.codebooks.codebooks();
     let voting = halves.codebooks.voting();

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use phalanx_hand::{Digit, Dof};
 use phalanx_rvm::Regressor as _;
-use phalanx_rvm::{Bridges, Kernel, Model, Stop, RelevanceVectorMachine};
+use phalanx_rvm::{AgarwalTriggs, Kernel, Model, Stop, RelevanceVectorMachine};
 use rayon::prelude::*;
 use serde_json::json;
 
@@ -110,7 +110,7 @@ fn trial(described: &Described, views: &[usize], seed: u64) -> Result<Trial> {
     };
     let bridges = |name, columns| {
         let stop = Stop::Count(columns);
-        let bridges = Bridges { kernel: Kernel::Linear, stop, ..Bridges::default() };
+        let bridges = AgarwalTriggs { kernel: Kernel::Linear, stop, ..AgarwalTriggs::default() };
         Fitted::new(name, &bridges.fit(x, y)?.model, &samples, active)
     };
     let as_many = |of: &Fitted| {

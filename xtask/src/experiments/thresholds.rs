@@ -1,7 +1,7 @@
 //! Fig. 6: how many vectors survive a threshold.
 
 use anyhow::{Context, Result};
-use phalanx_rvm::{Bridges, Kernel, Stop, Width};
+use phalanx_rvm::{AgarwalTriggs, Kernel, Stop, Width};
 use rayon::prelude::*;
 use serde_json::json;
 
@@ -62,7 +62,7 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
             .collect();
         for nu in NU {
             // How many survive is settled long before the weights are.
-            let bridges = Bridges { kernel, nu, max_iterations: 300, ..Bridges::default() };
+            let bridges = AgarwalTriggs { kernel, nu, max_iterations: 300, ..AgarwalTriggs::default() };
             let one = kept(&one, bridges, &thresholds)?;
             let three = kept(&three, bridges, &thresholds)?;
             curves.push(Curves::new(name, nu, thresholds.clone(), &one, &three));
@@ -73,13 +73,13 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
 }
 
 /// How many columns each split keeps at each threshold.
-fn kept(splits: &[Samples], bridges: Bridges, thresholds: &[f64]) -> Result<Vec<Vec<usize>>> {
+fn kept(splits: &[Samples], bridges: AgarwalTriggs, thresholds: &[f64]) -> Result<Vec<Vec<usize>>> {
     let runs: Vec<(&Samples, f64)> =
         splits.iter().flat_map(|split| thresholds.iter().map(move |&t| (split, t))).collect();
     let counts: Vec<usize> = runs
         .into_par_iter()
         .map(|(samples, threshold)| {
-            let bridges = Bridges { stop: Stop::Threshold(threshold), ..bridges };
+            let bridges = AgarwalTriggs { stop: Stop::Threshold(threshold), ..bridges };
             let fit = bridges.fit(samples.x.as_ref(), samples.y.as_ref())?;
             Ok(fit.model.weights().ncols())
         })

@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use phalanx::Regressor;
-use phalanx_rvm::{Bridges, Cascade, ForwardSelection, Kernel, KernelRidge, Stop, RelevanceVectorMachine};
+use phalanx_rvm::{AgarwalTriggs, TwoStageSelection, OrthogonalLeastSquares, Kernel, KernelRidge, Stop, RelevanceVectorMachine};
 
 /// How many columns each of the paper's methods keeps.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -78,27 +78,27 @@ impl Method {
 
     /// The regressor with these counts; `None` for nearest neighbours, which fit nothing.
     pub(crate) fn regressor(self, counts: Counts) -> Option<Regressor> {
-        let gaussian = Bridges::default().kernel;
+        let gaussian = AgarwalTriggs::default().kernel;
         Some(match self {
-            Self::Lin => Regressor::Bridges(Bridges {
+            Self::Lin => Regressor::Bridges(AgarwalTriggs {
                 kernel: Kernel::Linear,
                 stop: Stop::Count(counts.lin_features),
-                ..Bridges::default()
+                ..AgarwalTriggs::default()
             }),
-            Self::Gauss => Regressor::Bridges(Bridges {
+            Self::Gauss => Regressor::Bridges(AgarwalTriggs {
                 kernel: gaussian,
                 stop: Stop::Count(counts.gauss_samples),
-                ..Bridges::default()
+                ..AgarwalTriggs::default()
             }),
-            Self::Both => Regressor::Cascade(Cascade {
+            Self::Both => Regressor::Cascade(TwoStageSelection {
                 features: Stop::Count(counts.both_features),
                 samples: Stop::Count(counts.both_samples),
-                ..Cascade::default()
+                ..TwoStageSelection::default()
             }),
-            Self::Forward => Regressor::Forward(ForwardSelection {
+            Self::Forward => Regressor::Forward(OrthogonalLeastSquares {
                 kernel: gaussian,
                 count: counts.gauss_samples,
-                ..ForwardSelection::default()
+                ..OrthogonalLeastSquares::default()
             }),
             Self::TippingLin => {
                 Regressor::Tipping(RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() })

@@ -14,7 +14,7 @@ use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 use phalanx_refine::Refinement;
 use phalanx_render::Renderer;
-use phalanx_rvm::{Cascade, Stop};
+use phalanx_rvm::{TwoStageSelection, Stop};
 use rayon::prelude::*;
 
 use super::{Look, Seen, sheet};
@@ -106,10 +106,10 @@ impl Learning<'_> {
             .collect();
         let (x, poses): (Vec<Vec<f64>>, Vec<Pose>) = kept.into_iter().unzip();
         let x = Mat::from_fn(descriptor.dim(), x.len(), |row, column| x[column][row]);
-        let cascade = Cascade {
+        let cascade = TwoStageSelection {
             features: Stop::Count(FEATURES),
             samples: Stop::Count(SAMPLES),
-            ..Cascade::default()
+            ..TwoStageSelection::default()
         };
         let fit = Regressor::Cascade(cascade).fit(&x, &targets(&poses))?;
         Ok(Estimator::from_parts(rig.clone(), (*hand).clone(), descriptor.clone(), fit.model)?)

@@ -42,10 +42,10 @@ impl Scenes for Random {
 }
 
 fn linear() -> Regressor {
-    Regressor::Bridges(Bridges {
+    Regressor::Bridges(AgarwalTriggs {
         kernel: Kernel::Linear,
         stop: Stop::Count(20),
-        ..Bridges::default()
+        ..AgarwalTriggs::default()
     })
 }
 

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use phalanx::{Error, OrientationRule, Progress, Regressor, Silent, Training};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, Side};
-use phalanx_rvm::{Bridges, Cascade, ForwardSelection, Kernel, Ridge, Stop, RelevanceVectorMachine};
+use phalanx_rvm::{AgarwalTriggs, TwoStageSelection, OrthogonalLeastSquares, Kernel, Ridge, Stop, RelevanceVectorMachine};
 
 use crate::desk::{ESTIMATOR, difference_deg, estimate, masks, poses, rig, top, training, unseen};
 
@@ -27,17 +27,17 @@ fn the_same_bytes_at_any_number_of_threads() {
 fn every_regressor_learns() {
     let regressors = [
         Regressor::Ridge(Ridge::default()),
-        Regressor::Bridges(Bridges {
+        Regressor::Bridges(AgarwalTriggs {
             kernel: Kernel::Linear,
             stop: Stop::Count(12),
-            ..Bridges::default()
+            ..AgarwalTriggs::default()
         }),
-        Regressor::Cascade(Cascade {
+        Regressor::Cascade(TwoStageSelection {
             features: Stop::Count(20),
             samples: Stop::Count(20),
-            ..Cascade::default()
+            ..TwoStageSelection::default()
         }),
-        Regressor::Forward(ForwardSelection { count: 20, ..ForwardSelection::default() }),
+        Regressor::Forward(OrthogonalLeastSquares { count: 20, ..OrthogonalLeastSquares::default() }),
         Regressor::Tipping(RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() }),
     ];
     for regressor in regressors {

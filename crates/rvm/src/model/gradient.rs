@@ -44,7 +44,7 @@ impl Model {
 mod tests {
     use crate::basis::kernel::{Kernel, Width};
     use crate::ridge::Ridge;
-    use crate::sparse::orthogonal_least_squares::ForwardSelection;
+    use crate::sparse::orthogonal_least_squares::OrthogonalLeastSquares;
 
     use super::*;
 
@@ -59,10 +59,10 @@ mod tests {
     #[test]
     fn slopes_are_those_of_central_differences() {
         let (x, y) = data();
-        let gaussian = ForwardSelection {
+        let gaussian = OrthogonalLeastSquares {
             kernel: Kernel::Gaussian(Width::Scatter(2.0)),
             count: 12,
-            ..ForwardSelection::default()
+            ..OrthogonalLeastSquares::default()
         };
         let fits = [
             Ridge::default().fit(x.as_ref(), y.as_ref()).unwrap(),

@@ -51,12 +51,12 @@ pub enum Stop {
 /// 2ν log‖a‖, not of ν log‖a‖.
 ///
 /// ```
-/// use phalanx_rvm::{Bridges, Kernel, Stop, faer::Mat};
+/// use phalanx_rvm::{AgarwalTriggs, Kernel, Stop, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(20, 100, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
 /// let y = Mat::from_fn(2, 100, |j, t| x[(4, t)] - 2.0 * x[(11 + j, t)]);
-/// let bridges = Bridges { kernel: Kernel::Linear, stop: Stop::Count(3), ..Bridges::default() };
+/// let bridges = AgarwalTriggs { kernel: Kernel::Linear, stop: Stop::Count(3), ..AgarwalTriggs::default() };
 /// let model = bridges.fit(x.as_ref(), y.as_ref())?.model;
 /// assert_eq!(model.selected_features(), [4, 11, 12], "shared by both targets");
 /// # Ok(())
@@ -64,7 +64,7 @@ pub enum Stop {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Bridges {
+pub struct AgarwalTriggs {
     /// Basis columns.
     pub kernel: Kernel,
     /// ν/m > 0, the strength of the prior for each target. It bounds how many columns survive;
@@ -80,7 +80,7 @@ pub struct Bridges {
     pub max_iterations: usize,
 }
 
-impl Default for Bridges {
+impl Default for AgarwalTriggs {
     fn default() -> Self {
         Self {
             kernel: Kernel::Gaussian(Width::Scatter(1.0)),
@@ -93,7 +93,7 @@ impl Default for Bridges {
     }
 }
 
-impl Bridges {
+impl AgarwalTriggs {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
         let problem = Problem::new(x, y)?;

@@ -30,12 +30,12 @@ const DEPENDENT: f64 = 1e-10;
 /// chosen or the targets are already met.
 ///
 /// ```
-/// use phalanx_rvm::{ForwardSelection, Kernel, faer::Mat};
+/// use phalanx_rvm::{OrthogonalLeastSquares, Kernel, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(20, 100, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
 /// let y = Mat::from_fn(2, 100, |j, t| x[(4, t)] - 2.0 * x[(11 + j, t)]);
-/// let selection = ForwardSelection { kernel: Kernel::Linear, count: 3, ..Default::default() };
+/// let selection = OrthogonalLeastSquares { kernel: Kernel::Linear, count: 3, ..Default::default() };
 /// let model = selection.fit(x.as_ref(), y.as_ref())?.model;
 /// assert_eq!(model.selected_features(), [4, 11, 12]);
 /// # Ok(())
@@ -43,7 +43,7 @@ const DEPENDENT: f64 = 1e-10;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct ForwardSelection {
+pub struct OrthogonalLeastSquares {
     /// Basis columns.
     pub kernel: Kernel,
     /// Columns to choose, at least 1.
@@ -54,14 +54,14 @@ pub struct ForwardSelection {
     pub sweeps: usize,
 }
 
-impl Default for ForwardSelection {
+impl Default for OrthogonalLeastSquares {
     fn default() -> Self {
         let kernel = Kernel::Gaussian(Width::Scatter(1.0));
         Self { kernel, count: 10, lambda: 1e-3, sweeps: 20 }
     }
 }
 
-impl ForwardSelection {
+impl OrthogonalLeastSquares {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
         let problem = Problem::new(x, y)?;

@@ -10,7 +10,7 @@ use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::model::report::{Fit, Report};
-use crate::sparse::agarwal_triggs::{Bridges, Stop};
+use crate::sparse::agarwal_triggs::{AgarwalTriggs, Stop};
 use crate::stream::Sums;
 use crate::stream::summed::Summed;
 
@@ -20,42 +20,42 @@ use crate::stream::summed::Summed;
 /// The traces are the two stages'. If no feature survives, the model is the mean.
 ///
 /// ```
-/// use phalanx_rvm::{Cascade, faer::Mat};
+/// use phalanx_rvm::{TwoStageSelection, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(30, 200, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
 /// let y = Mat::from_fn(1, 200, |_, t| (3.0 * x[(4, t)]).sin() + x[(9, t)]);
-/// let model = Cascade::default().fit(x.as_ref(), y.as_ref())?.model;
+/// let model = TwoStageSelection::default().fit(x.as_ref(), y.as_ref())?.model;
 /// assert!(model.selected_features().len() < 30 && model.kept_samples().len() < 200);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Cascade {
+pub struct TwoStageSelection {
     /// When features are dropped.
     pub features: Stop,
     /// When samples are dropped.
     pub samples: Stop,
     /// Width of the Gaussian kernels, on the features selected.
     pub width: Width,
-    /// ν/m > 0 of both stages, as in [`Bridges::nu`].
+    /// ν/m > 0 of both stages, as in [`AgarwalTriggs::nu`].
     pub nu: f64,
 }
 
-impl Default for Cascade {
+impl Default for TwoStageSelection {
     fn default() -> Self {
-        let stop = Bridges::default().stop;
+        let stop = AgarwalTriggs::default().stop;
         Self {
             features: stop,
             samples: stop,
             width: Width::Scatter(1.0),
-            nu: Bridges::default().nu,
+            nu: AgarwalTriggs::default().nu,
         }
     }
 }
 
-impl Cascade {
+impl TwoStageSelection {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
         self.width.check()?;
@@ -105,7 +105,7 @@ impl Cascade {
         Ok(Fit { model, report: Report::new(traces, report.penalty) })
     }
 
-    fn bridges(&self, kernel: Kernel, stop: Stop) -> Bridges {
-        Bridges { kernel, stop, nu: self.nu, ..Bridges::default() }
+    fn bridges(&self, kernel: Kernel, stop: Stop) -> AgarwalTriggs {
+        AgarwalTriggs { kernel, stop, nu: self.nu, ..AgarwalTriggs::default() }
     }
 }

@@ -1,8 +1,8 @@
 //! Everything public can be sent to, and shared between, threads.
 
 use phalanx_rvm::{
-    Basis, Block, Bridges, Cascade, Columns, Components, ConditionalDensity,
-    ConditionalDensityParts, Deviation, Error, Factor, Fit, ForwardSelection, GradientMetric,
+    Basis, Block, AgarwalTriggs, TwoStageSelection, Columns, Components, ConditionalDensity,
+    ConditionalDensityParts, Deviation, Error, Factor, Fit, OrthogonalLeastSquares, GradientMetric,
     Group, AugmentedRvm, Hypothesis, Kernel, KernelRidge, Lambda, ArdRvm, Metric, Model,
     ModelParts, MultiOutputRvm, Network, NetworkOnComponents, NetworkParts, Nystrom, Penalty,
     Perceptron, Pilot, Posterior, Progress, Projected, Projection, ProjectionParts, Regressor,
@@ -20,8 +20,8 @@ shared!(
     Box<dyn Regressor>,
     Basis,
     Block,
-    Bridges,
-    Cascade,
+    AgarwalTriggs,
+    TwoStageSelection,
     Columns,
     Components,
     ConditionalDensity,
@@ -31,7 +31,7 @@ shared!(
     Factor,
     Fit,
     Fit<Network>,
-    ForwardSelection,
+    OrthogonalLeastSquares,
     GradientMetric,
     Group,
     AugmentedRvm,

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use phalanx_rvm::{
-    Bridges, Cascade, Error, ForwardSelection, Kernel, KernelRidge, Lambda, ArdRvm,
+    AgarwalTriggs, TwoStageSelection, Error, OrthogonalLeastSquares, Kernel, KernelRidge, Lambda, ArdRvm,
     MultiOutputRvm, Nystrom, Penalty, ProblemSize, Regressor, Ridge, Standardiser, Stop, RelevanceVectorMachine,
     Width,
 };
@@ -100,8 +100,8 @@ fn constant_targets_are_met_exactly_and_constant_inputs_ignored() {
 fn hyper_parameters_out_of_range_are_named() {
     let (x, y) = smooth(3, 4, 2, 12);
     let (x, y) = (x.as_ref(), y.as_ref());
-    let bridges = Bridges::default();
-    let forward = ForwardSelection::default();
+    let bridges = AgarwalTriggs::default();
+    let forward = OrthogonalLeastSquares::default();
     let tipping = RelevanceVectorMachine::default();
     let shared = MultiOutputRvm::default();
     let name = |result: phalanx_rvm::Result<phalanx_rvm::Fit>| match result.unwrap_err() {
@@ -110,11 +110,11 @@ fn hyper_parameters_out_of_range_are_named() {
     };
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(name(Ridge { lambda: bad, ..Ridge::default() }.fit(x, y)), "lambda");
-        assert_eq!(name(Bridges { nu: bad, ..bridges }.fit(x, y)), "nu");
-        assert_eq!(name(Bridges { lambda: bad, ..bridges }.fit(x, y)), "lambda");
-        assert_eq!(name(Bridges { tolerance: bad, ..bridges }.fit(x, y)), "tolerance");
-        assert_eq!(name(Cascade { nu: bad, ..Cascade::default() }.fit(x, y)), "nu");
-        assert_eq!(name(ForwardSelection { lambda: bad, ..forward }.fit(x, y)), "lambda");
+        assert_eq!(name(AgarwalTriggs { nu: bad, ..bridges }.fit(x, y)), "nu");
+        assert_eq!(name(AgarwalTriggs { lambda: bad, ..bridges }.fit(x, y)), "lambda");
+        assert_eq!(name(AgarwalTriggs { tolerance: bad, ..bridges }.fit(x, y)), "tolerance");
+        assert_eq!(name(TwoStageSelection { nu: bad, ..TwoStageSelection::default() }.fit(x, y)), "nu");
+        assert_eq!(name(OrthogonalLeastSquares { lambda: bad, ..forward }.fit(x, y)), "lambda");
         assert_eq!(name(RelevanceVectorMachine { tolerance: bad, ..tipping }.fit(x, y)), "tolerance");
         assert_eq!(name(RelevanceVectorMachine { noise_floor: bad, ..tipping }.fit(x, y)), "noise_floor");
         if bad != 0.0 {
@@ -127,12 +127,12 @@ fn hyper_parameters_out_of_range_are_named() {
         let penalty = Penalty::CrossValidated(vec![1.0, bad]);
         assert_eq!(name(Nystrom { penalty, ..Nystrom::default() }.fit(x, y)), "lambda");
         let kernel = Kernel::Gaussian(Width::Scatter(bad));
-        assert_eq!(name(Bridges { kernel, ..bridges }.fit(x, y)), "c");
+        assert_eq!(name(AgarwalTriggs { kernel, ..bridges }.fit(x, y)), "c");
     }
     let kernel = Kernel::Gaussian(Width::Beta(0.0));
     assert_eq!(name(RelevanceVectorMachine { kernel, ..tipping }.fit(x, y)), "beta");
-    assert_eq!(name(Bridges { stop: Stop::Threshold(-1.0), ..bridges }.fit(x, y)), "threshold");
-    assert_eq!(name(Bridges { max_iterations: 0, ..bridges }.fit(x, y)), "max_iterations");
+    assert_eq!(name(AgarwalTriggs { stop: Stop::Threshold(-1.0), ..bridges }.fit(x, y)), "threshold");
+    assert_eq!(name(AgarwalTriggs { max_iterations: 0, ..bridges }.fit(x, y)), "max_iterations");
     assert_eq!(name(RelevanceVectorMachine { max_iterations: 0, ..tipping }.fit(x, y)), "max_iterations");
     assert_eq!(name(MultiOutputRvm { most: Some(0), ..shared }.fit(x, y)), "most");
     let lambda = Lambda::LeaveOneOut(Vec::new());
@@ -141,15 +141,15 @@ fn hyper_parameters_out_of_range_are_named() {
     for asked in [0, 13] {
         let count = Error::Count { asked, available: 12 };
         let stop = Stop::Count(asked);
-        assert_eq!(Bridges { stop, ..bridges }.fit(x, y).unwrap_err(), count);
-        assert_eq!(ForwardSelection { count: asked, ..forward }.fit(x, y).unwrap_err(), count);
+        assert_eq!(AgarwalTriggs { stop, ..bridges }.fit(x, y).unwrap_err(), count);
+        assert_eq!(OrthogonalLeastSquares { count: asked, ..forward }.fit(x, y).unwrap_err(), count);
     }
     let on = |centres: &[usize]| Nystrom::default().fit_on(x, y, centres).unwrap_err();
     assert_eq!(on(&[]), Error::Count { asked: 0, available: 12 });
     for (centres, index) in [([3, 3], 3), ([4, 2], 2), ([2, 12], 12)] {
         assert_eq!(on(&centres), Error::Index { what: "centres", index, available: 12 });
     }
-    let cascade = Cascade { features: Stop::Count(5), ..Cascade::default() };
+    let cascade = TwoStageSelection { features: Stop::Count(5), ..TwoStageSelection::default() };
     assert_eq!(cascade.fit(x, y).unwrap_err(), Error::Count { asked: 5, available: 4 });
 }
 
@@ -165,9 +165,9 @@ fn sizes_are_refused_beforehand() {
     assert_eq!(RelevanceVectorMachine::default().check(size), too_many);
     assert_eq!(MultiOutputRvm::default().check(size), too_many);
     assert_eq!(ArdRvm::default().check(size), too_many);
-    assert_eq!(Bridges::default().check(size), too_many);
-    assert_eq!(ForwardSelection::default().check(size), too_many);
-    assert_eq!(Cascade::default().check(size), too_many);
+    assert_eq!(AgarwalTriggs::default().check(size), too_many);
+    assert_eq!(OrthogonalLeastSquares::default().check(size), too_many);
+    assert_eq!(TwoStageSelection::default().check(size), too_many);
     let found = KernelRidge::default().fit(x.as_ref(), x.as_ref());
     assert_eq!(found.map(drop), too_many);
     assert_eq!(Nystrom::default().check(size), Ok(()));
@@ -175,9 +175,9 @@ fn sizes_are_refused_beforehand() {
     let wide = ProblemSize { samples: 3, inputs: 12_000, outputs: 1 };
     let too_many = Err(Error::TooManyColumns { columns: 12_000, limit });
     assert_eq!(Ridge::default().check(wide), too_many);
-    assert_eq!(Cascade::default().check(wide), too_many);
+    assert_eq!(TwoStageSelection::default().check(wide), too_many);
     assert_eq!(KernelRidge::default().check(wide), Ok(()));
-    let few = ForwardSelection { count: 4, ..ForwardSelection::default() };
+    let few = OrthogonalLeastSquares { count: 4, ..OrthogonalLeastSquares::default() };
     assert_eq!(few.check(wide), Err(Error::Count { asked: 4, available: 3 }));
     let ridge = Ridge { lambda: -1.0, ..Ridge::default() };
     assert!(matches!(ridge.check(size), Err(Error::Parameter { name: "lambda", .. })));
@@ -187,9 +187,9 @@ fn sizes_are_refused_beforehand() {
 fn too_few_steps_are_reported_and_not_refused() {
     let (x, y) = smooth(3, 4, 2, 12);
     let (x, y) = (x.as_ref(), y.as_ref());
-    let bridges = Bridges { max_iterations: 1, ..Bridges::default() }.fit(x, y).unwrap();
+    let bridges = AgarwalTriggs { max_iterations: 1, ..AgarwalTriggs::default() }.fit(x, y).unwrap();
     assert!(!bridges.report.converged && bridges.report.iterations == 1);
-    assert_eq!(bridges.report.penalty, Some(Bridges::default().nu));
+    assert_eq!(bridges.report.penalty, Some(AgarwalTriggs::default().nu));
     let tipping = RelevanceVectorMachine { max_iterations: 1, ..RelevanceVectorMachine::default() }.fit(x, y).unwrap();
     assert!(!tipping.report.converged && tipping.report.iterations == 2);
     let shared = MultiOutputRvm { max_iterations: 1, ..MultiOutputRvm::default() };

@@ -1,7 +1,7 @@
 //! Bridges against a literal transcription of the paper's section 4.
 
 use faer::{Mat, MatRef};
-use phalanx_rvm::{Bridges, Cascade, Kernel, Regressor, Standardiser, Stop, Width};
+use phalanx_rvm::{AgarwalTriggs, TwoStageSelection, Kernel, Regressor, Standardiser, Stop, Width};
 use proptest::prelude::*;
 
 use crate::problems::{GAUSSIAN, close, rows, smooth, solve};
@@ -26,7 +26,7 @@ fn least_squares(f: MatRef<'_, f64>, y: MatRef<'_, f64>, penalties: &[f64]) -> M
 fn transcription(
     f: MatRef<'_, f64>,
     y: MatRef<'_, f64>,
-    bridges: &Bridges,
+    bridges: &AgarwalTriggs,
     threshold: f64,
 ) -> (Vec<usize>, Mat<f64>) {
     let nu = bridges.nu * y.nrows() as f64;
@@ -68,8 +68,8 @@ proptest! {
         let (x, y) = smooth(seed, 7, 3, 30);
         let threshold = 0.02;
         let kernel = if linear { Kernel::Linear } else { GAUSSIAN };
-        let bridges = Bridges {
-            kernel, nu, stop: Stop::Threshold(threshold), ..Bridges::default()
+        let bridges = AgarwalTriggs {
+            kernel, nu, stop: Stop::Threshold(threshold), ..AgarwalTriggs::default()
         };
         let scale = Standardiser::fit(y.as_ref())?;
         let z = Standardiser::fit(x.as_ref())?.apply(x.as_ref())?;
@@ -86,7 +86,7 @@ proptest! {
     #[test]
     fn each_step_lowers_the_objective(seed in any::<u64>(), nu in 0.001..0.3_f64) {
         let (x, y) = smooth(seed, 7, 3, 30);
-        let bridges = Bridges { nu, stop: Stop::Threshold(0.0), ..Bridges::default() };
+        let bridges = AgarwalTriggs { nu, stop: Stop::Threshold(0.0), ..AgarwalTriggs::default() };
         let fit = bridges.fit(x.as_ref(), y.as_ref())?;
         // Nothing is dropped before a norm underflows, which takes more steps than these.
         let objective = &fit.report.traces[0].objective;
@@ -98,7 +98,7 @@ proptest! {
     fn a_count_is_met(seed in any::<u64>(), count in 1..=12_usize, nu in 0.001..1.0_f64) {
         let (x, y) = smooth(seed, 12, 3, 30);
         for kernel in [Kernel::Linear, GAUSSIAN] {
-            let bridges = Bridges { kernel, nu, stop: Stop::Count(count), ..Bridges::default() };
+            let bridges = AgarwalTriggs { kernel, nu, stop: Stop::Count(count), ..AgarwalTriggs::default() };
             let fit = bridges.fit(x.as_ref(), y.as_ref())?;
             let norms: Vec<f64> =
                 fit.model.weights().col_iter().map(|column| column.norm_l2()).collect();
@@ -112,8 +112,8 @@ proptest! {
     #[test]
     fn a_cascade_reads_only_its_features(seed in any::<u64>()) {
         let (x, y) = smooth(seed, 10, 3, 40);
-        let cascade = Cascade {
-            features: Stop::Count(4), samples: Stop::Count(9), ..Cascade::default()
+        let cascade = TwoStageSelection {
+            features: Stop::Count(4), samples: Stop::Count(9), ..TwoStageSelection::default()
         };
         let model = cascade.fit(x.as_ref(), y.as_ref())?.model;
         prop_assert_eq!(model.selected_features().len(), 4);
@@ -129,7 +129,7 @@ proptest! {
 #[test]
 fn everything_pruned_leaves_the_mean() {
     let (x, y) = smooth(5, 3, 2, 25);
-    let bridges = Bridges { stop: Stop::Threshold(1e9), ..Bridges::default() };
+    let bridges = AgarwalTriggs { stop: Stop::Threshold(1e9), ..AgarwalTriggs::default() };
     let fit = bridges.fit(x.as_ref(), y.as_ref()).unwrap();
     assert!(fit.report.converged && fit.model.weights().ncols() == 0);
     let (mean, std) = fit.model.predict_with_std(x.as_ref()).unwrap();
@@ -146,7 +146,7 @@ fn the_sign_of_beta_does_not_matter() {
     let (x, y) = smooth(6, 3, 2, 25);
     let fit = |beta| {
         let kernel = Kernel::Gaussian(Width::Beta(beta));
-        Bridges { kernel, ..Bridges::default() }.fit(x.as_ref(), y.as_ref()).unwrap()
+        AgarwalTriggs { kernel, ..AgarwalTriggs::default() }.fit(x.as_ref(), y.as_ref()).unwrap()
     };
     assert_eq!(fit(0.2), fit(-0.2));
 }

@@ -1,7 +1,7 @@
 //! What must not matter: the order of samples and of targets, the targets' units, the threads.
 
 use faer::Mat;
-use phalanx_rvm::{Bridges, Kernel, Regressor, Stop};
+use phalanx_rvm::{AgarwalTriggs, Kernel, Regressor, Stop};
 use proptest::prelude::*;
 
 use crate::problems::{FITTERS, Source, close, columns, rows, smooth};
@@ -62,7 +62,7 @@ proptest! {
     fn targets_given_twice_change_no_selection(seed in any::<u64>()) {
         let (x, y) = smooth(seed, 6, 2, 40);
         let twice = rows(y.as_ref(), &[0, 1, 0, 1]);
-        let bridges = Bridges { kernel: Kernel::Linear, stop: Stop::Count(3), ..Bridges::default() };
+        let bridges = AgarwalTriggs { kernel: Kernel::Linear, stop: Stop::Count(3), ..AgarwalTriggs::default() };
         let once = bridges.fit(x.as_ref(), y.as_ref())?.model;
         let again = bridges.fit(x.as_ref(), twice.as_ref())?.model;
         prop_assert_eq!(once.selected_features(), again.selected_features());

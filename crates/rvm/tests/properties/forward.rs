@@ -1,7 +1,7 @@
 //! Forward selection against a search that solves every candidate's least squares problem.
 
 use faer::Mat;
-use phalanx_rvm::{ForwardSelection, Kernel, Standardiser};
+use phalanx_rvm::{OrthogonalLeastSquares, Kernel, Standardiser};
 use proptest::prelude::*;
 
 use crate::problems::{rows, smooth, solve};
@@ -46,7 +46,7 @@ proptest! {
             errors.push(least);
         }
         chosen.sort_unstable();
-        let fit = ForwardSelection { kernel: Kernel::Linear, count, lambda, sweeps: 0 }
+        let fit = OrthogonalLeastSquares { kernel: Kernel::Linear, count, lambda, sweeps: 0 }
             .fit(x.as_ref(), y.as_ref())?;
         prop_assert_eq!(fit.model.selected_features(), chosen);
         for (found, expected) in fit.report.traces[0].objective.iter().zip(&errors) {
@@ -62,7 +62,7 @@ proptest! {
         let lambda = 0.1;
         let error = penalised_error(&x, &y, lambda)?;
         let chosen = |sweeps| {
-            let forward = ForwardSelection { kernel: Kernel::Linear, count, lambda, sweeps };
+            let forward = OrthogonalLeastSquares { kernel: Kernel::Linear, count, lambda, sweeps };
             let fit = forward.fit(x.as_ref(), y.as_ref())?;
             Ok::<_, phalanx_rvm::Error>(fit.model.selected_features().to_vec())
         };

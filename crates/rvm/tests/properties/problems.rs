@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Bridges, Cascade, Fit, ForwardSelection, Kernel, KernelRidge, ArdRvm, MultiOutputRvm,
+    AgarwalTriggs, TwoStageSelection, Fit, OrthogonalLeastSquares, Kernel, KernelRidge, ArdRvm, MultiOutputRvm,
     Nystrom, Result, Ridge, Stop, RelevanceVectorMachine, Width,
 };
 use rand_core::Rng;
@@ -16,8 +16,8 @@ pub(crate) const GAUSSIAN: Kernel = Kernel::Gaussian(Width::Scatter(1.0));
 pub(crate) const FITTERS: [(&str, Fitter); 13] = [
     ("ridge, linear", |x, y| Ridge::default().fit(x, y)),
     ("ridge, Gaussian", |x, y| Ridge { kernel: GAUSSIAN, lambda: 0.1 }.fit(x, y)),
-    ("bridges, linear", |x, y| Bridges { kernel: Kernel::Linear, ..Bridges::default() }.fit(x, y)),
-    ("bridges, Gaussian", |x, y| Bridges::default().fit(x, y)),
+    ("bridges, linear", |x, y| AgarwalTriggs { kernel: Kernel::Linear, ..AgarwalTriggs::default() }.fit(x, y)),
+    ("bridges, Gaussian", |x, y| AgarwalTriggs::default().fit(x, y)),
     ("Tipping, linear", |x, y| RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() }.fit(x, y)),
     ("Tipping, Gaussian", |x, y| RelevanceVectorMachine::default().fit(x, y)),
     ("multivariate RVM, linear", |x, y| {
@@ -28,9 +28,9 @@ pub(crate) const FITTERS: [(&str, Fitter); 13] = [
     ("kernel ridge", |x, y| KernelRidge::default().fit(x, y)),
     ("Nyström", |x, y| Nystrom::default().fit(x, y)),
     ("forward", |x, y| {
-        ForwardSelection { kernel: GAUSSIAN, count: 1, ..ForwardSelection::default() }.fit(x, y)
+        OrthogonalLeastSquares { kernel: GAUSSIAN, count: 1, ..OrthogonalLeastSquares::default() }.fit(x, y)
     }),
-    ("cascade", |x, y| Cascade { features: Stop::Threshold(0.05), ..Cascade::default() }.fit(x, y)),
+    ("cascade", |x, y| TwoStageSelection { features: Stop::Threshold(0.05), ..TwoStageSelection::default() }.fit(x, y)),
 ];
 
 pub(crate) struct Source(Pcg64Mcg);

@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, Bridges, Cascade, Columns, Error, ForwardSelection, GradientMetric, Kernel, KernelRidge,
+    Block, AgarwalTriggs, TwoStageSelection, Columns, Error, OrthogonalLeastSquares, GradientMetric, Kernel, KernelRidge,
     ArdRvm, Model, MultiOutputRvm, Nystrom, Perceptron, Pilot, Projected, Regressor, Result,
     Ridge, Stop, Sums, RelevanceVectorMachine, Width, random_subset,
 };
@@ -134,13 +134,13 @@ fn ridge() {
 
 #[test]
 fn bridges() {
-    let bridges = Bridges { stop: Stop::Count(30), ..Bridges::default() };
+    let bridges = AgarwalTriggs { stop: Stop::Count(30), ..AgarwalTriggs::default() };
     streamed(bridges.kernel, |columns, sums| bridges.fit_sums(columns, sums));
 }
 
 #[test]
 fn forward_selection() {
-    let forward = ForwardSelection { count: 30, ..ForwardSelection::default() };
+    let forward = OrthogonalLeastSquares { count: 30, ..OrthogonalLeastSquares::default() };
     streamed(forward.kernel, |columns, sums| forward.fit_sums(columns, sums));
 }
 
@@ -162,7 +162,7 @@ fn nystrom() {
 #[test]
 fn cascade() {
     let cascade =
-        Cascade { features: Stop::Count(5), samples: Stop::Count(30), ..Cascade::default() };
+        TwoStageSelection { features: Stop::Count(5), samples: Stop::Count(30), ..TwoStageSelection::default() };
     alike(&ROWS, |x, y| {
         let linear = pilot_columns(x, y, Kernel::Linear, &ALL);
         let first = cascade.fit_features(&linear, &summed(&linear, x, y)).unwrap();

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Bridges, Cascade, Columns, Error, Fit, ForwardSelection, Kernel, Pilot, Regressor, Result,
+    AgarwalTriggs, TwoStageSelection, Columns, Error, Fit, OrthogonalLeastSquares, Kernel, Pilot, Regressor, Result,
     Ridge, Stop, Sums, SumsParts, Width, random_subset,
 };
 use proptest::prelude::*;
@@ -87,12 +87,12 @@ fn ridge() -> Ridge {
     Ridge { kernel: GAUSSIAN, lambda: 0.1 }
 }
 
-fn bridges(kernel: Kernel) -> Bridges {
-    Bridges { kernel, stop: Stop::Count(4), ..Bridges::default() }
+fn bridges(kernel: Kernel) -> AgarwalTriggs {
+    AgarwalTriggs { kernel, stop: Stop::Count(4), ..AgarwalTriggs::default() }
 }
 
-fn forward() -> ForwardSelection {
-    ForwardSelection { kernel: GAUSSIAN, count: 5, lambda: 0.01, sweeps: 3 }
+fn forward() -> OrthogonalLeastSquares {
+    OrthogonalLeastSquares { kernel: GAUSSIAN, count: 5, lambda: 0.01, sweeps: 3 }
 }
 
 const BOTH: [Both; 4] = [
@@ -138,10 +138,10 @@ proptest! {
     #[test]
     fn two_passes_are_the_cascade(seed in any::<u64>()) {
         let (x, y) = smooth(seed, 6, 3, 60);
-        let cascade = Cascade {
+        let cascade = TwoStageSelection {
             features: Stop::Count(3),
             samples: Stop::Count(5),
-            ..Cascade::default()
+            ..TwoStageSelection::default()
         };
         let samples: Vec<usize> = (0..60).collect();
         let pilot = Pilot { x: x.as_ref(), y: y.as_ref(), samples: &samples };
@@ -317,7 +317,7 @@ fn fitters_name_sums_that_are_not_theirs() {
     }
     let refused = ridge().fit_sums(&gaussian, &sums);
     assert!(matches!(refused, Err(Error::OtherColumns { .. })));
-    let cascade = Cascade { features: Stop::Count(2), ..Cascade::default() };
+    let cascade = TwoStageSelection { features: Stop::Count(2), ..TwoStageSelection::default() };
     let first = cascade.fit_features(&linear, &sums).unwrap();
     let refused = cascade.fit_samples(first, &gaussian, &Sums::new(&gaussian));
     assert!(matches!(refused, Err(Error::NotSelected { .. })));
