@@ -11,7 +11,7 @@ use faer::Mat;
 use phalanx::OrientationRule;
 use phalanx_multiview::Vocabulary;
 use phalanx_rvm::{
-    AgarwalTriggs, Columns, Fit, OrthogonalLeastSquares, Kernel, MultiOutputRvm, Nystrom, Pilot, Ridge, Stop,
+    AgarwalTriggs, Columns, Fit, OrthogonalLeastSquares, Kernel, MultiOutputRvm, NystromRidge, Pilot, Ridge, Stop,
     Sums, Width, random_subset,
 };
 
@@ -81,7 +81,7 @@ impl Selector {
             }
             Self::Nystrom => {
                 let centres = random_subset(x.ncols(), count, SEED);
-                Nystrom { width: WIDTH, ..Nystrom::default() }.fit_on(x, y, &centres)?
+                NystromRidge { width: WIDTH, ..NystromRidge::default() }.fit_on(x, y, &centres)?
             }
         })
     }

@@ -2,7 +2,7 @@
 
 use phalanx_codebook::KMeans;
 use phalanx_multiview::Vocabulary;
-use phalanx_rvm::{Deviation, GradientMetric, Nystrom, Penalty, Perceptron, Width};
+use phalanx_rvm::{PredictiveDeviation, GradientMetric, NystromRidge, NystromRegularisation, Perceptron, Width};
 
 use crate::{
     Description, Framing, LearntMetric, NetworkTraining, OrientationRule, Regressor, Training,
@@ -36,10 +36,10 @@ impl Preset {
     /// The training. It learns from scenes that stream by, of which it should see independent,
     /// damaged ones, as many as [`scenes`](Self::scenes) says.
     pub fn training(self) -> Training {
-        let regression = |width, penalties: &[f64]| Nystrom {
+        let regression = |width, penalties: &[f64]| NystromRidge {
             width: Width::Scatter(width),
-            deviation: Deviation::CrossValidated,
-            penalty: Penalty::CrossValidated(penalties.to_vec()),
+            deviation: PredictiveDeviation::CrossValidated,
+            penalty: NystromRegularisation::CrossValidated(penalties.to_vec()),
         };
         let regressor = match self {
             Self::Fast => Regressor::LearntMetric(LearntMetric {

@@ -35,7 +35,7 @@ pub enum Regressor {
     /// Dense kernel ridge regression.
     KernelRidge(KernelRidge),
     /// Kernel ridge regression on Gaussians of some of the samples.
-    Nystrom(Nystrom),
+    Nystrom(NystromRidge),
     /// Kernel ridge regression on some of the samples' Gaussians, for each digit with a distance of
     /// its own that is learnt first.
     LearntMetric(LearntMetric),
@@ -57,7 +57,7 @@ pub struct LearntMetric {
     /// Gaussians of each digit's regression, at most; some of the pilot's, chosen at random.
     pub centres: usize,
     /// The regression.
-    pub regression: Nystrom,
+    pub regression: NystromRidge,
 }
 
 /// How a network is trained. What it reads of every scene is kept until then: some kilobytes each.

@@ -4,7 +4,7 @@ use faer::Mat;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_multiview::{Codes, Concatenation, Scratch, Vocabulary};
-use phalanx_rvm::{KernelRidge, Lambda, Width};
+use phalanx_rvm::{KernelRidge, Regularisation, Width};
 use rayon::prelude::*;
 
 use crate::{
@@ -51,7 +51,7 @@ impl Default for Training {
             description: Description::Counts,
             regressor: Regressor::KernelRidge(KernelRidge {
                 width: Width::Scatter(0.5),
-                lambda: Lambda::Given(0.01),
+                lambda: Regularisation::Given(0.01),
             }),
         }
     }

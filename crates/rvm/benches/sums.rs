@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use faer::Mat;
-use phalanx_rvm::{AgarwalTriggs, Columns, OrthogonalLeastSquares, Kernel, Nystrom, Pilot, Stop, Sums, Width};
+use phalanx_rvm::{AgarwalTriggs, Columns, OrthogonalLeastSquares, Kernel, NystromRidge, Pilot, Stop, Sums, Width};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -46,7 +46,7 @@ fn sums(c: &mut Criterion) {
     group.bench_function("add a block of 512", |b| {
         b.iter(|| more.add(&columns, black_box(bx), by).unwrap());
     });
-    let nystrom = Nystrom { width: WIDTH, ..Nystrom::default() };
+    let nystrom = NystromRidge { width: WIDTH, ..NystromRidge::default() };
     group.bench_function("Nyström, 6 lambdas", |b| {
         b.iter(|| nystrom.fit_sums(&columns, black_box(&sums)).unwrap());
     });

@@ -4,7 +4,7 @@ use anyhow::Result;
 use phalanx_rvm::faer::{Mat, MatRef};
 use phalanx_rvm::{
     Block, AgarwalTriggs, Columns, OrthogonalLeastSquares, GradientMetric, Kernel, Model, MultiOutputRvm,
-    Nystrom, Pilot, Projection, Stop, Sums, Width,
+    NystromRidge, Pilot, Projection, Stop, Sums, Width,
 };
 
 use super::clock::{middle, timed};
@@ -53,7 +53,7 @@ pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
     let wide = Width::Scatter(3.0);
     let learnt = measure(&problem, || by_distance(&problem, wide, |c, s| forward(c, s, wide)))?;
     let wider = Width::Scatter(4.0);
-    let dense = Nystrom { width: wider, ..Nystrom::default() };
+    let dense = NystromRidge { width: wider, ..NystromRidge::default() };
     let all =
         measure(&problem, || by_distance(&problem, wider, |c, s| Ok(dense.fit_sums(c, s)?.model)))?;
     let few_vectors = Target::AtMost(MOST as f64);
@@ -142,7 +142,7 @@ fn by_distance(
     fit: impl Fn(&Columns, &Sums) -> phalanx_rvm::Result<Model>,
 ) -> phalanx_rvm::Result<Made> {
     let (x, y) = (problem.x.as_ref(), problem.y.as_ref());
-    let regression = Nystrom { width: Width::Scatter(1.7), ..Nystrom::default() };
+    let regression = NystromRidge { width: Width::Scatter(1.7), ..NystromRidge::default() };
     let learning = GradientMetric { regression, rounds: 1, centres: 400, gradients: 400, rank: 40 };
     let block = Block { inputs: x.nrows(), components: 60 };
     let all = vec![(0..y.nrows()).collect()];

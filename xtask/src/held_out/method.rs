@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use faer::{Mat, MatRef};
 use phalanx::{Preset, Regressor};
-use phalanx_rvm::{KernelRidge, Model, Nystrom, Width};
+use phalanx_rvm::{KernelRidge, Model, NystromRidge, Width};
 
 use super::presets::Answer;
 use crate::described::Samples;
@@ -123,7 +123,7 @@ fn kernel_regression(samples: usize) -> Regressor {
 
 /// Gaussian kernel regression on many samples.
 pub(crate) fn nystrom() -> Regressor {
-    Regressor::Nystrom(Nystrom { width: WIDTH, ..Nystrom::default() })
+    Regressor::Nystrom(NystromRidge { width: WIDTH, ..NystromRidge::default() })
 }
 
 impl Predictor {

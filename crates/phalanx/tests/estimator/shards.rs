@@ -75,7 +75,7 @@ fn merged_shards_are_the_bytes_of_one_run_at_any_number_of_threads() {
 #[test]
 fn four_shards_of_kernel_regression_are_one_run() {
     let scenes = Random::new(1100);
-    let nystrom = Regressor::Nystrom(Nystrom::default());
+    let nystrom = Regressor::Nystrom(NystromRidge::default());
     let bytes = |part: Part| part.finish(&Silent).unwrap().to_bytes().unwrap();
     let whole = bytes(scenes.shard(&nystrom, 1, 1).unwrap());
     let mut merged = scenes.shard(&nystrom, 4, 4).unwrap();
@@ -102,7 +102,7 @@ fn parts_of_other_trainings_are_refused() {
     let mut one = part(200, &linear());
     let error = one.merge(part(201, &linear())).unwrap_err();
     assert!(error.to_string().ends_with("their numbers of scenes"), "{error}");
-    let gaussian = Regressor::Nystrom(Nystrom::default());
+    let gaussian = Regressor::Nystrom(NystromRidge::default());
     let error = one.merge(part(200, &gaussian)).unwrap_err();
     assert!(error.to_string().ends_with("their regressors"), "{error}");
 }

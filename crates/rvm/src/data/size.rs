@@ -6,12 +6,12 @@ use faer::MatRef;
 /// a caller need not gather samples first.
 ///
 /// ```
-/// use phalanx_rvm::{Error, KernelRidge, Nystrom, ProblemSize};
+/// use phalanx_rvm::{Error, KernelRidge, NystromRidge, ProblemSize};
 ///
 /// let size = ProblemSize { samples: 14_000, inputs: 300, outputs: 28 };
 /// let refused = KernelRidge::default().check(size);
 /// assert!(matches!(refused, Err(Error::TooManyColumns { columns: 14_000, limit: 10_000 })));
-/// assert!(Nystrom::default().check(size).is_ok());
+/// assert!(NystromRidge::default().check(size).is_ok());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ProblemSize {

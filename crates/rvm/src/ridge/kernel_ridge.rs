@@ -19,7 +19,7 @@ use crate::ridge::penalised::Penalised;
 /// How strongly kernel ridge regression is penalised.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Lambda {
+pub enum Regularisation {
     /// This λ > 0.
     Given(f64),
     /// Of these λ > 0, the one with the least squared leave-one-out error over all targets,
@@ -38,12 +38,12 @@ pub enum Lambda {
 /// Time and memory grow with the cube and the square of the number of samples.
 ///
 /// ```
-/// use phalanx_rvm::{KernelRidge, Lambda, faer::Mat};
+/// use phalanx_rvm::{KernelRidge, Regularisation, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(1, 50, |_, t| t as f64 / 8.0);
 /// let y = Mat::from_fn(1, 50, |_, t| x[(0, t)].cos());
-/// let lambda = Lambda::LeaveOneOut(vec![1e-6, 1e-3, 1.0]);
+/// let lambda = Regularisation::LeaveOneOut(vec![1e-6, 1e-3, 1.0]);
 /// let fit = KernelRidge { lambda, ..KernelRidge::default() }.fit(x.as_ref(), y.as_ref())?;
 /// assert_eq!(fit.report.penalty, Some(1e-6), "there is no noise to smooth away");
 /// assert_eq!(fit.model.kept_samples().len(), 50);
@@ -56,13 +56,13 @@ pub struct KernelRidge {
     /// Width of the kernel.
     pub width: Width,
     /// Penalty.
-    pub lambda: Lambda,
+    pub lambda: Regularisation,
 }
 
 impl Default for KernelRidge {
     fn default() -> Self {
         let grid = (-5..=1).map(|e| 10_f64.powi(e)).collect();
-        Self { width: Width::Scatter(3.0), lambda: Lambda::LeaveOneOut(grid) }
+        Self { width: Width::Scatter(3.0), lambda: Regularisation::LeaveOneOut(grid) }
     }
 }
 
@@ -107,8 +107,8 @@ impl KernelRidge {
 
     fn grid(&self) -> Result<&[f64]> {
         let grid = match &self.lambda {
-            Lambda::Given(lambda) => std::slice::from_ref(lambda),
-            Lambda::LeaveOneOut(grid) => grid,
+            Regularisation::Given(lambda) => std::slice::from_ref(lambda),
+            Regularisation::LeaveOneOut(grid) => grid,
         };
         check::grid(grid)?;
         Ok(grid)

@@ -34,7 +34,7 @@ const SEED: u64 = 0;
 /// How strongly a Nyström regression is penalised.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Penalty {
+pub enum NystromRegularisation {
     /// This λ > 0.
     Given(f64),
     /// Of these λ > 0, the one with the least generalised cross-validation error (Golub, Heath
@@ -46,7 +46,7 @@ pub enum Penalty {
 /// What a Nyström regression's standard deviation knows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Deviation {
+pub enum PredictiveDeviation {
     /// The noise, and how sure the weights are at the input: p² numbers, all of which a prediction
     /// reads.
     Posterior,
@@ -73,13 +73,13 @@ pub enum Deviation {
 /// Time grows with n·p² for the sums and p³ for each λ; memory with p².
 ///
 /// ```
-/// use phalanx_rvm::{Nystrom, faer::Mat, random_subset};
+/// use phalanx_rvm::{NystromRidge, faer::Mat, random_subset};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(1, 500, |_, t| t as f64 / 60.0);
 /// let y = Mat::from_fn(1, 500, |_, t| x[(0, t)].sin());
 /// let centres = random_subset(500, 40, 1); // Gaussians on 40 of the samples
-/// let model = Nystrom::default().fit_on(x.as_ref(), y.as_ref(), &centres)?.model;
+/// let model = NystromRidge::default().fit_on(x.as_ref(), y.as_ref(), &centres)?.model;
 /// let (mean, std) = model.predict_with_std(x.as_ref())?;
 /// assert!((0..500).all(|t| (mean[(0, t)] - y[(0, t)]).abs() < 0.01 && std[(0, t)] > 0.0));
 /// # Ok(())
@@ -87,29 +87,29 @@ pub enum Deviation {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Nystrom {
+pub struct NystromRidge {
     /// Width of the kernel.
     pub width: Width,
     /// What the standard deviation knows.
-    pub deviation: Deviation,
+    pub deviation: PredictiveDeviation,
     /// Penalty. In a Gaussian process λ is the noise's variance over the signal's, whatever the
     /// number of samples: the default grid goes from next to no noise (10⁻⁴) to hardly any signal
     /// (10).
-    pub penalty: Penalty,
+    pub penalty: NystromRegularisation,
 }
 
-impl Default for Nystrom {
+impl Default for NystromRidge {
     fn default() -> Self {
         let grid = (-4..=1).map(|e| 10_f64.powi(e)).collect();
         Self {
             width: Width::Scatter(1.0),
-            deviation: Deviation::Posterior,
-            penalty: Penalty::CrossValidated(grid),
+            deviation: PredictiveDeviation::Posterior,
+            penalty: NystromRegularisation::CrossValidated(grid),
         }
     }
 }
 
-impl Nystrom {
+impl NystromRidge {
     /// Most centres that [`fit`](Self::fit) takes: the fit of as many takes a second or two.
     pub const CENTRES: usize = 1000;
 
@@ -162,8 +162,8 @@ impl Nystrom {
 
     fn grid(&self) -> Result<&[f64]> {
         let grid = match &self.penalty {
-            Penalty::Given(lambda) => std::slice::from_ref(lambda),
-            Penalty::CrossValidated(grid) => grid,
+            NystromRegularisation::Given(lambda) => std::slice::from_ref(lambda),
+            NystromRegularisation::CrossValidated(grid) => grid,
         };
         check::grid(grid)?;
         Ok(grid)
@@ -217,7 +217,7 @@ impl<'a> Whitened<'a> {
         samples * residual.max(0.0) / (left * left * targets)
     }
 
-    fn model(&self, lambda: f64, deviation: Deviation) -> Result<Model> {
+    fn model(&self, lambda: f64, deviation: PredictiveDeviation) -> Result<Model> {
         let solved = self.solve(lambda)?;
         let (mut factor, used) = solved.posterior();
         let lower = self.lower.as_ref();
@@ -226,13 +226,13 @@ impl<'a> Whitened<'a> {
         let kept: Vec<usize> = (0..lower.ncols()).collect();
         let mut noise = penalised::noise(self.equations, &kept, weights.as_ref(), used);
         let factor = match deviation {
-            Deviation::Posterior => {
+            PredictiveDeviation::Posterior => {
                 // M of the columns themselves is M L⁻¹.
                 factor = factor.transpose().to_owned();
                 linalg::upper_solve(lower.transpose(), &mut factor);
                 Factor::pack(kept.clone(), factor.transpose())
             }
-            Deviation::CrossValidated => {
+            PredictiveDeviation::CrossValidated => {
                 let samples = self.equations.samples() as f64;
                 let left = penalised::freedom(self.equations, used);
                 if left >= 1.0 {

@@ -13,7 +13,7 @@ use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::linalg;
 use crate::model::Model;
-use crate::ridge::nystrom::Nystrom;
+use crate::ridge::nystrom::NystromRidge;
 use crate::stream::Sums;
 use crate::transform::affine_map::Projection;
 use crate::transform::learned_metric::{Group, Metric};
@@ -40,12 +40,12 @@ const GRADIENT_SEED: u64 = 1;
 /// which is what makes predictions fast.
 ///
 /// ```
-/// use phalanx_rvm::{Block, GradientMetric, Nystrom, Projected, faer::Mat};
+/// use phalanx_rvm::{Block, GradientMetric, NystromRidge, Projected, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(6, 400, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
 /// let y = Mat::from_fn(1, 400, |_, t| (4.0 * (x[(1, t)] + x[(2, t)])).sin());
-/// let nystrom = Nystrom::default();
+/// let nystrom = NystromRidge::default();
 /// let learning =
 ///     GradientMetric { regression: nystrom.clone(), rounds: 2, centres: 100, gradients: 400, rank: 1 };
 /// let blocks = [Block { inputs: 6, components: 6 }];
@@ -64,7 +64,7 @@ const GRADIENT_SEED: u64 = 1;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GradientMetric {
     /// The regressions whose gradients are taken.
-    pub regression: Nystrom,
+    pub regression: NystromRidge,
     /// How often a distance is learnt, at least 1.
     pub rounds: usize,
     /// Gaussians of the regressions, at most; at least 1.

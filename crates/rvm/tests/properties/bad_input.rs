@@ -2,8 +2,8 @@
 
 use faer::Mat;
 use phalanx_rvm::{
-    AgarwalTriggs, TwoStageSelection, Error, OrthogonalLeastSquares, Kernel, KernelRidge, Lambda, ArdRvm,
-    MultiOutputRvm, Nystrom, Penalty, ProblemSize, Regressor, Ridge, Standardiser, Stop, RelevanceVectorMachine,
+    AgarwalTriggs, TwoStageSelection, Error, OrthogonalLeastSquares, Kernel, KernelRidge, Regularisation, ArdRvm,
+    MultiOutputRvm, NystromRidge, NystromRegularisation, ProblemSize, Regressor, Ridge, Standardiser, Stop, RelevanceVectorMachine,
     Width,
 };
 use proptest::prelude::*;
@@ -122,10 +122,10 @@ fn hyper_parameters_out_of_range_are_named() {
         }
         assert_eq!(name(MultiOutputRvm { tolerance: bad, ..shared }.fit(x, y)), "tolerance");
         assert_eq!(name(MultiOutputRvm { noise_floor: bad, ..shared }.fit(x, y)), "noise_floor");
-        let lambda = Lambda::LeaveOneOut(vec![1.0, bad]);
+        let lambda = Regularisation::LeaveOneOut(vec![1.0, bad]);
         assert_eq!(name(KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y)), "lambda");
-        let penalty = Penalty::CrossValidated(vec![1.0, bad]);
-        assert_eq!(name(Nystrom { penalty, ..Nystrom::default() }.fit(x, y)), "lambda");
+        let penalty = NystromRegularisation::CrossValidated(vec![1.0, bad]);
+        assert_eq!(name(NystromRidge { penalty, ..NystromRidge::default() }.fit(x, y)), "lambda");
         let kernel = Kernel::Gaussian(Width::Scatter(bad));
         assert_eq!(name(AgarwalTriggs { kernel, ..bridges }.fit(x, y)), "c");
     }
@@ -135,7 +135,7 @@ fn hyper_parameters_out_of_range_are_named() {
     assert_eq!(name(AgarwalTriggs { max_iterations: 0, ..bridges }.fit(x, y)), "max_iterations");
     assert_eq!(name(RelevanceVectorMachine { max_iterations: 0, ..tipping }.fit(x, y)), "max_iterations");
     assert_eq!(name(MultiOutputRvm { most: Some(0), ..shared }.fit(x, y)), "most");
-    let lambda = Lambda::LeaveOneOut(Vec::new());
+    let lambda = Regularisation::LeaveOneOut(Vec::new());
     let error = KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y).unwrap_err();
     assert!(matches!(error, Error::Empty { .. }));
     for asked in [0, 13] {
@@ -144,7 +144,7 @@ fn hyper_parameters_out_of_range_are_named() {
         assert_eq!(AgarwalTriggs { stop, ..bridges }.fit(x, y).unwrap_err(), count);
         assert_eq!(OrthogonalLeastSquares { count: asked, ..forward }.fit(x, y).unwrap_err(), count);
     }
-    let on = |centres: &[usize]| Nystrom::default().fit_on(x, y, centres).unwrap_err();
+    let on = |centres: &[usize]| NystromRidge::default().fit_on(x, y, centres).unwrap_err();
     assert_eq!(on(&[]), Error::Count { asked: 0, available: 12 });
     for (centres, index) in [([3, 3], 3), ([4, 2], 2), ([2, 12], 12)] {
         assert_eq!(on(&centres), Error::Index { what: "centres", index, available: 12 });
@@ -170,7 +170,7 @@ fn sizes_are_refused_beforehand() {
     assert_eq!(TwoStageSelection::default().check(size), too_many);
     let found = KernelRidge::default().fit(x.as_ref(), x.as_ref());
     assert_eq!(found.map(drop), too_many);
-    assert_eq!(Nystrom::default().check(size), Ok(()));
+    assert_eq!(NystromRidge::default().check(size), Ok(()));
     assert_eq!(Ridge::default().check(size), Ok(()));
     let wide = ProblemSize { samples: 3, inputs: 12_000, outputs: 1 };
     let too_many = Err(Error::TooManyColumns { columns: 12_000, limit });

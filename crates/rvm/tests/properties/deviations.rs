@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    ConditionalDensity, Deviation, AugmentedRvm, Model, Nystrom, Perceptron, Regressor, Scratch, RelevanceVectorMachine,
+    ConditionalDensity, PredictiveDeviation, AugmentedRvm, Model, NystromRidge, Perceptron, Regressor, Scratch, RelevanceVectorMachine,
 };
 use proptest::prelude::*;
 
@@ -50,9 +50,9 @@ proptest! {
     #[test]
     fn a_fit_that_uses_up_all_samples_has_the_targets_own_deviation(seed in any::<u64>()) {
         let (x, y) = smooth(seed, 5, 1, 4);
-        for deviation in [Deviation::Posterior, Deviation::CrossValidated] {
-            let penalty = phalanx_rvm::Penalty::Given(1e-9);
-            let nystrom = Nystrom { penalty, deviation, ..Nystrom::default() };
+        for deviation in [PredictiveDeviation::Posterior, PredictiveDeviation::CrossValidated] {
+            let penalty = phalanx_rvm::NystromRegularisation::Given(1e-9);
+            let nystrom = NystromRidge { penalty, deviation, ..NystromRidge::default() };
             let model = nystrom.fit(x.as_ref(), y.as_ref())?.model;
             let scale = phalanx_rvm::Standardiser::fit(y.as_ref())?.scale()[0];
             prop_assert!(model.noise()[0] > 0.99 * scale, "{} {scale}", model.noise()[0]);

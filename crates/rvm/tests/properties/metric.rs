@@ -2,7 +2,7 @@
 
 use phalanx_rvm::faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, Columns, Deviation, Error, GradientMetric, Group, Metric, Nystrom, Penalty, Pilot,
+    Block, Columns, PredictiveDeviation, Error, GradientMetric, Group, Metric, NystromRidge, NystromRegularisation, Pilot,
     Projected, Projection, ProjectionParts, Regressor, Scratch, Sums, Width, random_subset,
 };
 use proptest::prelude::*;
@@ -30,9 +30,9 @@ fn targets(x: MatRef<'_, f64>) -> Mat<f64> {
 }
 
 fn learner(rank: usize, rounds: usize) -> GradientMetric {
-    let penalty = Penalty::CrossValidated(vec![1e-4, 1e-3, 1e-2, 0.1]);
+    let penalty = NystromRegularisation::CrossValidated(vec![1e-4, 1e-3, 1e-2, 0.1]);
     let regression =
-        Nystrom { width: Width::Scatter(3.0), deviation: Deviation::CrossValidated, penalty };
+        NystromRidge { width: Width::Scatter(3.0), deviation: PredictiveDeviation::CrossValidated, penalty };
     GradientMetric { regression, rounds, centres: 200, gradients: 100, rank }
 }
 

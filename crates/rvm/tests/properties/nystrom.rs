@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Kernel, KernelRidge, Lambda, Nystrom, Penalty, Pilot, Regressor, Standardiser, Sums, Width,
+    Kernel, KernelRidge, Regularisation, NystromRidge, NystromRegularisation, Pilot, Regressor, Standardiser, Sums, Width,
     random_subset,
 };
 use proptest::prelude::*;
@@ -14,8 +14,8 @@ const BETA: f64 = 0.2;
 /// Added to the kernel between the centres.
 const JITTER: f64 = 1e-6;
 
-fn nystrom(penalty: Penalty) -> Nystrom {
-    Nystrom { width: Width::Beta(BETA), penalty, ..Nystrom::default() }
+fn nystrom(penalty: NystromRegularisation) -> NystromRidge {
+    NystromRidge { width: Width::Beta(BETA), penalty, ..NystromRidge::default() }
 }
 
 /// exp(−β‖a − b‖²) for each column a of the one and b of the other.
@@ -53,9 +53,9 @@ proptest! {
     #[test]
     fn all_samples_as_centres_are_kernel_ridge(seed in any::<u64>(), lambda in 0.01..2.0_f64) {
         let (x, y) = smooth(seed, 3, 2, 40);
-        let dense = KernelRidge { width: Width::Beta(BETA), lambda: Lambda::Given(lambda) };
+        let dense = KernelRidge { width: Width::Beta(BETA), lambda: Regularisation::Given(lambda) };
         let expected = dense.fit(x.as_ref(), y.as_ref())?.model.predict(x.as_ref())?;
-        let fit = nystrom(Penalty::Given(lambda)).fit(x.as_ref(), y.as_ref())?;
+        let fit = nystrom(NystromRegularisation::Given(lambda)).fit(x.as_ref(), y.as_ref())?;
         let difference = fit.model.predict(x.as_ref())? - expected;
         let targets = centred(y);
         for j in 0..2 {
@@ -84,7 +84,7 @@ proptest! {
             new_phi.row_mut(i).iter_mut().for_each(|v| *v -= mean);
         }
         let expected = outputs.invert((weights.transpose() * &new_phi).as_ref())?;
-        let model = nystrom(Penalty::Given(lambda)).fit_on(x.as_ref(), y.as_ref(), &chosen)?.model;
+        let model = nystrom(NystromRegularisation::Given(lambda)).fit_on(x.as_ref(), y.as_ref(), &chosen)?.model;
         let (mean, std) = model.predict_with_std(new.as_ref())?;
         prop_assert_eq!(model.kept_samples(), chosen);
         prop_assert!(close(mean.as_ref(), expected.as_ref(), 1e-5));
@@ -119,13 +119,13 @@ proptest! {
             let leverage = (hat.diagonal().column_vector().sum() + 1.0) / n as f64;
             residuals.squared_norm_l2() / ((1.0 - leverage).powi(2) * (n * m) as f64)
         }).collect::<Vec<f64>>();
-        let fit = nystrom(Penalty::CrossValidated(grid.clone())).fit_on(x.as_ref(), y.as_ref(), &chosen)?;
+        let fit = nystrom(NystromRegularisation::CrossValidated(grid.clone())).fit_on(x.as_ref(), y.as_ref(), &chosen)?;
         for (found, expected) in fit.report.traces[0].objective.iter().zip(&expected) {
             prop_assert!((found - expected).abs() < 1e-5 * expected, "{found} {expected}");
         }
         let best = (0..grid.len()).min_by(|&a, &b| expected[a].total_cmp(&expected[b]));
         prop_assert_eq!(fit.report.penalty, best.map(|b| grid[b]));
-        let given = nystrom(Penalty::Given(fit.report.penalty.unwrap()));
+        let given = nystrom(NystromRegularisation::Given(fit.report.penalty.unwrap()));
         prop_assert_eq!(given.fit_on(x.as_ref(), y.as_ref(), &chosen)?.model, fit.model);
     }
 }
@@ -136,7 +136,7 @@ fn any_number_of_threads_gives_the_same_bits() {
     let centres = random_subset(900, 300, 1);
     let fits = [1, 2, 8].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| Nystrom::default().fit_on(x.as_ref(), y.as_ref(), &centres)).unwrap()
+        pool.install(|| NystromRidge::default().fit_on(x.as_ref(), y.as_ref(), &centres)).unwrap()
     });
     assert_eq!(fits[0], fits[1]);
     assert_eq!(fits[0], fits[2]);
@@ -146,7 +146,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 fn inputs_that_do_not_vary_leave_the_mean() {
     let (_, y) = smooth(2, 3, 2, 30);
     let x = Mat::full(3, 30, 4.0);
-    let model = Nystrom::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
+    let model = NystromRidge::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
     assert!(model.kept_samples().is_empty());
     let outputs = Standardiser::fit(y.as_ref()).unwrap();
     let mean = model.predict(x.as_ref().subcols(0, 1)).unwrap();
@@ -164,7 +164,7 @@ fn repeated_centres_are_solved() {
     let (x2, y2) = (pick(&x), pick(&y));
     let samples: Vec<usize> = (0..60).collect();
     let pilot = Pilot { x: x2.as_ref(), y: y2.as_ref(), samples: &samples };
-    let fitter = nystrom(Penalty::Given(0.1));
+    let fitter = nystrom(NystromRegularisation::Given(0.1));
     let doubled = phalanx_rvm::Columns::new(&pilot, Kernel::Gaussian(fitter.width)).unwrap();
     let mut sums = Sums::new(&doubled);
     sums.add(&doubled, x.as_ref(), y.as_ref()).unwrap();

@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
     AgarwalTriggs, TwoStageSelection, Fit, OrthogonalLeastSquares, Kernel, KernelRidge, ArdRvm, MultiOutputRvm,
-    Nystrom, Result, Ridge, Stop, RelevanceVectorMachine, Width,
+    NystromRidge, Result, Ridge, Stop, RelevanceVectorMachine, Width,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -26,7 +26,7 @@ pub(crate) const FITTERS: [(&str, Fitter); 13] = [
     ("multivariate RVM, Gaussian", |x, y| MultiOutputRvm::default().fit(x, y)),
     ("learnt widths", |x, y| ArdRvm { rounds: 3, ..ArdRvm::default() }.fit(x, y)),
     ("kernel ridge", |x, y| KernelRidge::default().fit(x, y)),
-    ("Nyström", |x, y| Nystrom::default().fit(x, y)),
+    ("Nyström", |x, y| NystromRidge::default().fit(x, y)),
     ("forward", |x, y| {
         OrthogonalLeastSquares { kernel: GAUSSIAN, count: 1, ..OrthogonalLeastSquares::default() }.fit(x, y)
     }),

@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
     Block, AgarwalTriggs, TwoStageSelection, Columns, Error, OrthogonalLeastSquares, GradientMetric, Kernel, KernelRidge,
-    ArdRvm, Model, MultiOutputRvm, Nystrom, Perceptron, Pilot, Projected, Regressor, Result,
+    ArdRvm, Model, MultiOutputRvm, NystromRidge, Perceptron, Pilot, Projected, Regressor, Result,
     Ridge, Stop, Sums, RelevanceVectorMachine, Width, random_subset,
 };
 
@@ -39,7 +39,7 @@ fn nystrom_on_ordered_samples_is_as_good_as_on_shuffled_ones() {
     let shuffled = [&x, &y].map(|all| columns(all.as_ref(), &order));
     let centres = random_subset(1200, CENTRES, 1);
     let error = |x: &Mat<f64>, y: &Mat<f64>| {
-        let model = Nystrom::default().fit_on(x.as_ref(), y.as_ref(), &centres).unwrap().model;
+        let model = NystromRidge::default().fit_on(x.as_ref(), y.as_ref(), &centres).unwrap().model;
         root_mean_square((model.predict(x.as_ref()).unwrap() - y).as_ref())
     };
     let (ordered, shuffled) = (error(&x, &y), error(&shuffled[0], &shuffled[1]));
@@ -152,10 +152,10 @@ fn multivariate_rvm() {
 
 #[test]
 fn nystrom() {
-    streamed(GAUSSIAN, |columns, sums| Nystrom::default().fit_sums(columns, sums));
+    streamed(GAUSSIAN, |columns, sums| NystromRidge::default().fit_sums(columns, sums));
     alike(&ROWS, |x, y| {
         let centres = random_subset(x.ncols(), CENTRES, 1);
-        of_model(&Nystrom::default().fit_on(x.as_ref(), y.as_ref(), &centres).unwrap().model)
+        of_model(&NystromRidge::default().fit_on(x.as_ref(), y.as_ref(), &centres).unwrap().model)
     });
 }
 
@@ -175,7 +175,7 @@ fn cascade() {
 
 #[test]
 fn learnt_metric() {
-    let regression = Nystrom::default();
+    let regression = NystromRidge::default();
     let learning = GradientMetric {
         regression: regression.clone(),
         rounds: 1,
