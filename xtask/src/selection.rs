@@ -11,8 +11,8 @@ use faer::Mat;
 use phalanx::OrientationRule;
 use phalanx_multiview::Vocabulary;
 use phalanx_rvm::{
-    AgarwalTriggs, Columns, Fit, OrthogonalLeastSquares, Kernel, MultiOutputRvm, NystromRidge, Pilot, Ridge, Stop,
-    Sums, Width, random_subset,
+    AgarwalTriggs, BasisSpec, Fit, OrthogonalLeastSquares, Kernel, MultiOutputRvm, NystromRidge, PilotSample, Ridge, Stop,
+    SufficientStatistics, Bandwidth, random_subset,
 };
 
 use crate::described::Samples;
@@ -28,7 +28,7 @@ const SAMPLES: usize = 3000;
 const KEPT: [usize; 3] = [40, 100, 300];
 const TESTS: [Test; 2] = [Test::Unseen, Test::All];
 /// Width of every method's kernels, as suits few among many inputs.
-const WIDTH: Width = Width::Scatter(0.3);
+const WIDTH: Bandwidth = Bandwidth::Scatter(0.3);
 const KERNEL: Kernel = Kernel::Gaussian(WIDTH);
 /// Penalty on the weights where the method does not choose its own: it only keeps nearly dependent
 /// columns apart.
@@ -92,9 +92,9 @@ fn on_random_samples(samples: &Samples, count: usize) -> Result<Fit> {
     let chosen = random_subset(samples.x.ncols(), count, SEED);
     let of = |all: &Mat<f64>| Mat::from_fn(all.nrows(), count, |row, k| all[(row, chosen[k])]);
     let (pilot_x, pilot_y) = (of(&samples.x), of(&samples.y));
-    let pilot = Pilot { x: pilot_x.as_ref(), y: pilot_y.as_ref(), samples: &chosen };
-    let columns = Columns::new(&pilot, KERNEL)?;
-    let mut sums = Sums::new(&columns);
+    let pilot = PilotSample { x: pilot_x.as_ref(), y: pilot_y.as_ref(), samples: &chosen };
+    let columns = BasisSpec::new(&pilot, KERNEL)?;
+    let mut sums = SufficientStatistics::new(&columns);
     sums.add(&columns, samples.x.as_ref(), samples.y.as_ref())?;
     Ok(Ridge { kernel: KERNEL, lambda: LAMBDA }.fit_sums(&columns, &sums)?)
 }

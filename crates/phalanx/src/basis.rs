@@ -118,7 +118,7 @@ impl Basis {
 
     /// The columns of all numbers of the pose together, or of each group; none of a regressor that is
     /// fitted to the samples themselves.
-    pub(crate) fn columns(&self) -> Result<Vec<Columns>> {
+    pub(crate) fn columns(&self) -> Result<Vec<BasisSpec>> {
         let samples = self.pilot.len();
         let length = |each: usize| each.saturating_mul(samples);
         for (part, found, expected) in [
@@ -138,8 +138,8 @@ impl Basis {
                 let of_group = |group: usize| {
                     let y = metric.targets(group, y);
                     let x = metric.part(group, x);
-                    let pilot = Pilot { x, y: y.as_ref(), samples: &self.pilot };
-                    Ok(Columns::in_proportion(&pilot, fitter.regression.width)?)
+                    let pilot = PilotSample { x, y: y.as_ref(), samples: &self.pilot };
+                    Ok(BasisSpec::in_proportion(&pilot, fitter.regression.width)?)
                 };
                 (0..metric.groups.len()).into_par_iter().map(of_group).collect()
             }

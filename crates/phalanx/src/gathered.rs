@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use faer::{Mat, MatRef};
 use phalanx_hand::Dof;
-use phalanx_rvm::{Columns, Projected, Sums};
+use phalanx_rvm::{BasisSpec, Projected, SufficientStatistics};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -93,7 +93,7 @@ impl Gathered {
     pub(crate) fn add(
         &mut self,
         basis: &Basis,
-        columns: &[Columns],
+        columns: &[BasisSpec],
         block: usize,
         x: Mat<f64>,
         y: &Mat<f64>,
@@ -136,7 +136,7 @@ impl Gathered {
     pub(crate) fn check(
         &self,
         basis: &Basis,
-        columns: &[Columns],
+        columns: &[BasisSpec],
         held: &[usize],
         samples: Option<usize>,
     ) -> Result<()> {
@@ -149,7 +149,7 @@ impl Gathered {
                 }
                 // Sums refuse to be joined with those of other columns.
                 for (columns, sums) in columns.iter().zip(sums) {
-                    Sums::new(columns).merge(sums)?;
+                    SufficientStatistics::new(columns).merge(sums)?;
                 }
                 match sums.iter().find(|sums| Some(sums.samples()) != samples) {
                     Some(sums) => {
@@ -199,10 +199,10 @@ impl Gathered {
     }
 }
 
-fn fit_sums(sums: &[Sums], basis: &Basis) -> Result<Regression> {
-    let work: Vec<(Columns, &Sums)> = basis.columns()?.into_iter().zip(sums).collect();
+fn fit_sums(sums: &[SufficientStatistics], basis: &Basis) -> Result<Regression> {
+    let work: Vec<(BasisSpec, &SufficientStatistics)> = basis.columns()?.into_iter().zip(sums).collect();
     let fit =
-        |(columns, sums): &(Columns, &Sums)| Ok(basis.regressor.fit_sums(columns, sums)?.model);
+        |(columns, sums): &(BasisSpec, &SufficientStatistics)| Ok(basis.regressor.fit_sums(columns, sums)?.model);
     let mut models = work.par_iter().map(fit).collect::<Result<Vec<_>>>()?;
     Ok(match &basis.reading {
         Reading::Metric(metric) => Projected::from_parts(metric.clone(), models)?.into(),

@@ -2,7 +2,7 @@
 
 use phalanx_codebook::KMeans;
 use phalanx_multiview::Vocabulary;
-use phalanx_rvm::{PredictiveDeviation, GradientMetric, NystromRidge, NystromRegularisation, Perceptron, Width};
+use phalanx_rvm::{PredictiveDeviation, GradientMetric, NystromRidge, NystromRegularisation, Perceptron, Bandwidth};
 
 use crate::{
     Description, Framing, LearntMetric, NetworkTraining, OrientationRule, Regressor, Training,
@@ -37,7 +37,7 @@ impl Preset {
     /// damaged ones, as many as [`scenes`](Self::scenes) says.
     pub fn training(self) -> Training {
         let regression = |width, penalties: &[f64]| NystromRidge {
-            width: Width::Scatter(width),
+            width: Bandwidth::Scatter(width),
             deviation: PredictiveDeviation::CrossValidated,
             penalty: NystromRegularisation::CrossValidated(penalties.to_vec()),
         };

@@ -283,12 +283,12 @@ impl Regressor {
     fn fit_to_sums_of(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
         let chosen = random_subset(x.ncols(), Self::CANDIDATES, SUBSET_SEED);
         let [pilot_x, pilot_y] = [x, y].map(|all| columns_of(all, &chosen));
-        let pilot = Pilot { x: pilot_x.as_ref(), y: pilot_y.as_ref(), samples: &chosen };
+        let pilot = PilotSample { x: pilot_x.as_ref(), y: pilot_y.as_ref(), samples: &chosen };
         if let Self::Cascade(fitter) = self {
-            let linear = Columns::new(&pilot, Kernel::Linear)?;
+            let linear = BasisSpec::new(&pilot, Kernel::Linear)?;
             let first = fitter.fit_features(&linear, &sums(&linear, x, y)?)?;
             let kernel = Kernel::Gaussian(fitter.width);
-            let gaussian = Columns::over(&pilot, kernel, first.model.selected_features())?;
+            let gaussian = BasisSpec::over(&pilot, kernel, first.model.selected_features())?;
             return Ok(fitter.fit_samples(first, &gaussian, &sums(&gaussian, x, y)?)?);
         }
         let expected = Error::Mismatch { part: "sums", found: 0, expected: 1 };
@@ -297,8 +297,8 @@ impl Regressor {
     }
 }
 
-fn sums(columns: &Columns, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Sums> {
-    let mut sums = Sums::new(columns);
+fn sums(columns: &BasisSpec, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<SufficientStatistics> {
+    let mut sums = SufficientStatistics::new(columns);
     for start in (0..x.ncols()).step_by(BATCH) {
         let width = BATCH.min(x.ncols() - start);
         sums.add(columns, x.subcols(start, width), y.subcols(start, width))?;

@@ -5,7 +5,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use faer::Mat;
 use phalanx_rvm::{
-    AgarwalTriggs, OrthogonalLeastSquares, Kernel, KernelRidge, Regressor, Scratch, Stop, RelevanceVectorMachine, Width,
+    AgarwalTriggs, OrthogonalLeastSquares, Kernel, KernelRidge, Regressor, Scratch, Stop, RelevanceVectorMachine, Bandwidth,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -40,7 +40,7 @@ fn data() -> (Mat<f64>, Mat<f64>) {
 fn fits(c: &mut Criterion) {
     let (x, y) = data();
     let (x, y) = (x.as_ref(), y.as_ref());
-    let gaussian = Kernel::Gaussian(Width::Scatter(0.3));
+    let gaussian = Kernel::Gaussian(Bandwidth::Scatter(0.3));
     let mut group = c.benchmark_group("fit 837x90 to 24");
     group.sample_size(10);
     for (name, kernel) in [("linear", Kernel::Linear), ("gaussian", gaussian)] {
@@ -67,7 +67,7 @@ fn fits(c: &mut Criterion) {
 fn predictions(c: &mut Criterion) {
     let (x, y) = data();
     let features = x.as_ref().subrows(0, 32);
-    let kernel = Kernel::Gaussian(Width::Scatter(0.3));
+    let kernel = Kernel::Gaussian(Bandwidth::Scatter(0.3));
     let forward = OrthogonalLeastSquares { kernel, count: 38, ..OrthogonalLeastSquares::default() };
     let sparse = forward.fit(features, y.as_ref()).unwrap().model;
     let dense = KernelRidge::default().fit(x.as_ref(), y.as_ref()).unwrap().model;

@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use faer::Mat;
-use phalanx_rvm::{AgarwalTriggs, Columns, OrthogonalLeastSquares, Kernel, NystromRidge, Pilot, Stop, Sums, Width};
+use phalanx_rvm::{AgarwalTriggs, BasisSpec, OrthogonalLeastSquares, Kernel, NystromRidge, PilotSample, Stop, SufficientStatistics, Bandwidth};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -13,7 +13,7 @@ const COLUMNS: usize = 1000;
 const BLOCK: usize = 512;
 const INPUTS: usize = 90;
 const TARGETS: usize = 28;
-const WIDTH: Width = Width::Scatter(0.3);
+const WIDTH: Bandwidth = Bandwidth::Scatter(0.3);
 
 /// Histogram-like inputs, and targets that are smooth functions of them.
 fn data(samples: usize) -> (Mat<f64>, Mat<f64>) {
@@ -33,16 +33,16 @@ fn sums(c: &mut Criterion) {
     let (x, y) = data(COLUMNS + 8 * BLOCK);
     let samples: Vec<usize> = (0..COLUMNS).collect();
     let (px, py) = (x.as_ref().subcols(0, COLUMNS), y.as_ref().subcols(0, COLUMNS));
-    let pilot = Pilot { x: px, y: py, samples: &samples };
+    let pilot = PilotSample { x: px, y: py, samples: &samples };
     let kernel = Kernel::Gaussian(WIDTH);
-    let columns = Columns::new(&pilot, kernel).unwrap();
-    let mut sums = Sums::new(&columns);
+    let columns = BasisSpec::new(&pilot, kernel).unwrap();
+    let mut sums = SufficientStatistics::new(&columns);
     sums.add(&columns, x.as_ref(), y.as_ref()).unwrap();
 
     let mut group = c.benchmark_group("sums over 1000 Gaussians of 90 inputs");
     group.sample_size(10);
     let (bx, by) = (px.subcols(0, BLOCK), py.subcols(0, BLOCK));
-    let mut more = Sums::new(&columns);
+    let mut more = SufficientStatistics::new(&columns);
     group.bench_function("add a block of 512", |b| {
         b.iter(|| more.add(&columns, black_box(bx), by).unwrap());
     });

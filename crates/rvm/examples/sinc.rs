@@ -5,7 +5,7 @@
 
 use phalanx_rvm::faer::Mat;
 use phalanx_rvm::{
-    AgarwalTriggs, Fit, OrthogonalLeastSquares, Kernel, KernelRidge, Regressor, Result, RelevanceVectorMachine, Width,
+    AgarwalTriggs, Fit, OrthogonalLeastSquares, Kernel, KernelRidge, Regressor, Result, RelevanceVectorMachine, Bandwidth,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -26,7 +26,7 @@ fn main() -> Result<()> {
     });
     let (x, y) = (x.as_ref(), y.as_ref());
 
-    let width = Width::Scatter(7.0);
+    let width = Bandwidth::Scatter(7.0);
     let kernel = Kernel::Gaussian(width);
     show("Tipping", &RelevanceVectorMachine { kernel, ..RelevanceVectorMachine::default() }.fit(x, y)?)?;
     // One target alone wants a gentler prior than many that agree.

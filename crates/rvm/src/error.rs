@@ -153,7 +153,7 @@ pub enum Error {
     },
     /// The parts of sums do not fit together.
     #[error("parts of sums: {field} {problem}")]
-    SumsParts {
+    SufficientStatisticsParts {
         /// The field at fault.
         field: &'static str,
         /// What is wrong with it.

@@ -3,8 +3,8 @@
 use anyhow::Result;
 use phalanx_rvm::faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, AgarwalTriggs, Columns, OrthogonalLeastSquares, GradientMetric, Kernel, Model, MultiOutputRvm,
-    NystromRidge, Pilot, Projection, Stop, Sums, Width,
+    Block, AgarwalTriggs, BasisSpec, OrthogonalLeastSquares, GradientMetric, Kernel, Model, MultiOutputRvm,
+    NystromRidge, PilotSample, Projection, Stop, SufficientStatistics, Bandwidth,
 };
 
 use super::clock::{middle, timed};
@@ -50,9 +50,9 @@ pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
     let shared =
         measure(&problem, || as_given(&problem, width, |c, s| Ok(rvm.fit_sums(c, s)?.model)))?;
     let few = measure(&problem, || as_given(&problem, width, |c, s| forward(c, s, width)))?;
-    let wide = Width::Scatter(3.0);
+    let wide = Bandwidth::Scatter(3.0);
     let learnt = measure(&problem, || by_distance(&problem, wide, |c, s| forward(c, s, wide)))?;
-    let wider = Width::Scatter(4.0);
+    let wider = Bandwidth::Scatter(4.0);
     let dense = NystromRidge { width: wider, ..NystromRidge::default() };
     let all =
         measure(&problem, || by_distance(&problem, wider, |c, s| Ok(dense.fit_sums(c, s)?.model)))?;
@@ -96,7 +96,7 @@ pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
         target: Target::Open,
     });
     let (x, y) = (problem.x.as_ref(), problem.y.as_ref());
-    let gaussian = Kernel::Gaussian(Width::Scatter(0.3));
+    let gaussian = Kernel::Gaussian(Bandwidth::Scatter(0.3));
     for (name, kernel) in [("linear", Kernel::Linear), ("Gaussian", gaussian)] {
         let bridges = AgarwalTriggs { kernel, stop: Stop::Count(COUNT), ..AgarwalTriggs::default() };
         let fit = || Ok(Made { projection: None, model: bridges.fit(x, y)?.model });
@@ -118,19 +118,19 @@ pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
 
 /// What the peers' γ, 1 / (inputs × variance of all numbers), is where inputs are scaled alike to a
 /// mean variance of 1, as [`as_given`] does.
-fn width(problem: &Problem) -> Width {
+fn width(problem: &Problem) -> Bandwidth {
     let x = &problem.x;
     let count = (x.nrows() * x.ncols()) as f64;
     let mean = x.sum() / count;
     let variance = x.squared_norm_l2() / count - mean * mean;
-    Width::Beta(problem.variance() / (x.nrows() as f64 * variance))
+    Bandwidth::Beta(problem.variance() / (x.nrows() as f64 * variance))
 }
 
 /// A fit to inputs that keep their proportions, as the peers'.
 fn as_given(
     problem: &Problem,
-    width: Width,
-    fit: impl Fn(&Columns, &Sums) -> phalanx_rvm::Result<Model>,
+    width: Bandwidth,
+    fit: impl Fn(&BasisSpec, &SufficientStatistics) -> phalanx_rvm::Result<Model>,
 ) -> phalanx_rvm::Result<Made> {
     Ok(Made { projection: None, model: in_proportion(problem.x.as_ref(), problem, width, fit)? })
 }
@@ -138,11 +138,11 @@ fn as_given(
 /// A fit to inputs in which a distance was learnt.
 fn by_distance(
     problem: &Problem,
-    width: Width,
-    fit: impl Fn(&Columns, &Sums) -> phalanx_rvm::Result<Model>,
+    width: Bandwidth,
+    fit: impl Fn(&BasisSpec, &SufficientStatistics) -> phalanx_rvm::Result<Model>,
 ) -> phalanx_rvm::Result<Made> {
     let (x, y) = (problem.x.as_ref(), problem.y.as_ref());
-    let regression = NystromRidge { width: Width::Scatter(1.7), ..NystromRidge::default() };
+    let regression = NystromRidge { width: Bandwidth::Scatter(1.7), ..NystromRidge::default() };
     let learning = GradientMetric { regression, rounds: 1, centres: 400, gradients: 400, rank: 40 };
     let block = Block { inputs: x.nrows(), components: 60 };
     let all = vec![(0..y.nrows()).collect()];
@@ -155,18 +155,18 @@ fn by_distance(
 fn in_proportion(
     x: MatRef<'_, f64>,
     problem: &Problem,
-    width: Width,
-    fit: impl Fn(&Columns, &Sums) -> phalanx_rvm::Result<Model>,
+    width: Bandwidth,
+    fit: impl Fn(&BasisSpec, &SufficientStatistics) -> phalanx_rvm::Result<Model>,
 ) -> phalanx_rvm::Result<Model> {
     let y = problem.y.as_ref();
     let samples: Vec<usize> = (0..x.ncols()).collect();
-    let columns = Columns::in_proportion(&Pilot { x, y, samples: &samples }, width)?;
-    let mut sums = Sums::new(&columns);
+    let columns = BasisSpec::in_proportion(&PilotSample { x, y, samples: &samples }, width)?;
+    let mut sums = SufficientStatistics::new(&columns);
     sums.add(&columns, x, y)?;
     fit(&columns, &sums)
 }
 
-fn forward(columns: &Columns, sums: &Sums, width: Width) -> phalanx_rvm::Result<Model> {
+fn forward(columns: &BasisSpec, sums: &SufficientStatistics, width: Bandwidth) -> phalanx_rvm::Result<Model> {
     let chosen = OrthogonalLeastSquares { count: MOST, lambda: LAMBDA, ..OrthogonalLeastSquares::default() };
     let chosen = OrthogonalLeastSquares { kernel: Kernel::Gaussian(width), ..chosen };
     Ok(chosen.fit_sums(columns, sums)?.model)

@@ -1,7 +1,7 @@
 //! Fig. 6: how many vectors survive a threshold.
 
 use anyhow::{Context, Result};
-use phalanx_rvm::{AgarwalTriggs, Kernel, Stop, Width};
+use phalanx_rvm::{AgarwalTriggs, Kernel, Stop, Bandwidth};
 use rayon::prelude::*;
 use serde_json::json;
 
@@ -24,7 +24,7 @@ const SPLITS: u64 = 5;
 const PER_DECADE: i32 = 4;
 const DECADES: i32 = 3;
 const KERNELS: [(&str, Kernel, f64); 2] =
-    [("linear", Kernel::Linear, 0.01), ("Gaussian", Kernel::Gaussian(Width::Scatter(1.0)), 0.1)];
+    [("linear", Kernel::Linear, 0.01), ("Gaussian", Kernel::Gaussian(Bandwidth::Scatter(1.0)), 0.1)];
 /// The priors compared; the first is drawn. ν bounds what survives at any threshold: only with a
 /// weak one does the threshold decide over all of the columns.
 const NU: [f64; 3] = [1e-6, 1e-4, 1e-2];

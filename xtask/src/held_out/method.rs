@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use faer::{Mat, MatRef};
 use phalanx::{Preset, Regressor};
-use phalanx_rvm::{KernelRidge, Model, NystromRidge, Width};
+use phalanx_rvm::{KernelRidge, Model, NystromRidge, Bandwidth};
 
 use super::presets::Answer;
 use crate::described::Samples;
@@ -109,7 +109,7 @@ impl Method {
 
 /// Width of the kernels of `kernel`: wider than leave-one-out would have them, to which the
 /// neighbours in a sample's own sequence are near.
-const WIDTH: Width = Width::Scatter(0.5);
+const WIDTH: Bandwidth = Bandwidth::Scatter(0.5);
 
 /// Gaussian kernel regression with a kernel on each of so many samples or, of more than
 /// [`Regressor::CANDIDATES`], on as many of them.

@@ -4,7 +4,7 @@ use faer::{Mat, MatRef};
 
 use crate::basis::kernel::Kernel;
 use crate::basis::normal_equations::Equations;
-use crate::basis::spec::Columns;
+use crate::basis::spec::BasisSpec;
 use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::linalg;
@@ -12,7 +12,7 @@ use crate::linalg;
 /// The centred basis columns of a problem, with Gaussians on all of its samples.
 pub(crate) struct Design<'a> {
     problem: &'a Problem,
-    columns: Columns,
+    columns: BasisSpec,
     /// Φ: one centred basis function per column, I×p.
     pub(crate) phi: Mat<f64>,
     /// What was subtracted from each column.
@@ -24,7 +24,7 @@ impl<'a> Design<'a> {
     /// Basis columns over `features`, all of which vary. With none there are no columns.
     pub(crate) fn new(problem: &'a Problem, features: Vec<usize>, kernel: Kernel) -> Result<Self> {
         let all: Vec<usize> = (0..problem.z.ncols()).collect();
-        let columns = Columns::of(problem, features, kernel, &all)?;
+        let columns = BasisSpec::of(problem, features, kernel, &all)?;
         let mut phi = columns.between_centres().unwrap_or_else(|| {
             linalg::subrows(problem.z.as_ref(), columns.features()).transpose().to_owned()
         });
@@ -50,7 +50,7 @@ impl<'a> Design<'a> {
 }
 
 impl Equations for Design<'_> {
-    fn columns(&self) -> &Columns {
+    fn columns(&self) -> &BasisSpec {
         &self.columns
     }
 

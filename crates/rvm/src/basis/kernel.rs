@@ -19,13 +19,13 @@ pub enum Kernel {
     Linear,
     /// φᵢ(x) = exp(−|β| ‖x − xᵢ‖²): one per training sample, so that sparsity selects samples
     /// (p = I).
-    Gaussian(Width),
+    Gaussian(Bandwidth),
 }
 
 /// How quickly a Gaussian kernel falls, on standardised inputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Width {
+pub enum Bandwidth {
     /// From the scatter matrix of the training inputs: |β| = c / (2 tr cov), where tr cov is the
     /// number of inputs that vary. c > 0; about 0.3 suits few centres among many inputs, 1 to 3
     /// all centres; one or two inputs want 5 to 10.
@@ -35,7 +35,7 @@ pub enum Width {
     Beta(f64),
 }
 
-impl Width {
+impl Bandwidth {
     /// |β| for standardised inputs of which `varying` vary.
     pub(crate) fn magnitude(self, varying: usize) -> f64 {
         match self {

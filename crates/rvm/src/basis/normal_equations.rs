@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 
-use crate::basis::spec::Columns;
+use crate::basis::spec::BasisSpec;
 use crate::data::scaler::Standardiser;
 use crate::model::Model;
 use crate::model::parts::{ModelParts, Posterior};
@@ -11,7 +11,7 @@ use crate::model::parts::{ModelParts, Posterior};
 /// (n×m). A solver sees no more of the data than this.
 pub(crate) trait Equations {
     /// What the columns are columns of.
-    fn columns(&self) -> &Columns;
+    fn columns(&self) -> &BasisSpec;
 
     /// Number of samples n.
     fn samples(&self) -> usize;

@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 
 use crate::basis::gaussians::Gaussians;
-use crate::basis::kernel::{self, Kernel, Width};
+use crate::basis::kernel::{self, Kernel, Bandwidth};
 use crate::data::check;
 use crate::data::problem::Problem;
 use crate::data::scaler::Standardiser;
@@ -19,7 +19,7 @@ pub(crate) const FURTHEST: f64 = 65_536.0;
 /// Samples that are known before the others: what a stream's standardisation and its Gaussians'
 /// centres are taken from.
 #[derive(Debug, Clone, Copy)]
-pub struct Pilot<'a> {
+pub struct PilotSample<'a> {
     /// Inputs, K×n.
     pub x: MatRef<'a, f64>,
     /// Targets, m×n.
@@ -32,11 +32,11 @@ pub struct Pilot<'a> {
 /// The columns of a regression on samples that stream by: the scaling of inputs and targets, and
 /// the p basis functions.
 ///
-/// Everything here comes from the [`Pilot`], so that whoever holds the pilot can add any part of
-/// the stream to [`Sums`](crate::Sums) without seeing the rest. Inputs that do not vary in the
+/// Everything here comes from the [`PilotSample`], so that whoever holds the pilot can add any part of
+/// the stream to [`SufficientStatistics`](crate::SufficientStatistics) without seeing the rest. Inputs that do not vary in the
 /// pilot are left out.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Columns {
+pub struct BasisSpec {
     inputs: Standardiser,
     targets: Standardiser,
     kernel: Kernel,
@@ -48,22 +48,22 @@ pub struct Columns {
     origins: Vec<f64>,
 }
 
-impl Columns {
+impl BasisSpec {
     /// Columns over all inputs that vary: each input, or a Gaussian on each sample of the pilot.
-    pub fn new(pilot: &Pilot<'_>, kernel: Kernel) -> Result<Self> {
+    pub fn new(pilot: &PilotSample<'_>, kernel: Kernel) -> Result<Self> {
         let all: Vec<usize> = (0..pilot.x.nrows()).collect();
         Self::over(pilot, kernel, &all)
     }
 
     /// A Gaussian on each sample of the pilot, over inputs whose proportions mean something, such as
     /// those of a learnt [`Metric`](crate::Metric): all are divided by one number.
-    pub fn in_proportion(pilot: &Pilot<'_>, width: Width) -> Result<Self> {
+    pub fn in_proportion(pilot: &PilotSample<'_>, width: Bandwidth) -> Result<Self> {
         let problem = Problem::in_proportion(pilot.x, pilot.y)?;
         Self::on_pilot(&problem, problem.features(), Kernel::Gaussian(width), pilot)
     }
 
     /// Columns over the inputs in `features` (ascending) that vary.
-    pub fn over(pilot: &Pilot<'_>, kernel: Kernel, features: &[usize]) -> Result<Self> {
+    pub fn over(pilot: &PilotSample<'_>, kernel: Kernel, features: &[usize]) -> Result<Self> {
         let problem = Problem::new(pilot.x, pilot.y)?;
         check::indices("features", features, pilot.x.nrows())?;
         let varying = problem.features();
@@ -75,7 +75,7 @@ impl Columns {
         problem: &Problem,
         features: Vec<usize>,
         kernel: Kernel,
-        pilot: &Pilot<'_>,
+        pilot: &PilotSample<'_>,
     ) -> Result<Self> {
         check::length("indices of the pilot's samples", pilot.x.ncols(), pilot.samples.len())?;
         let places: Vec<usize> = (0..pilot.samples.len()).collect();

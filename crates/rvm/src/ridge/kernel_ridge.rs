@@ -4,7 +4,7 @@ use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Width};
+use crate::basis::kernel::{Kernel, Bandwidth};
 use crate::basis::normal_equations;
 use crate::data::check;
 use crate::data::problem::Problem;
@@ -54,7 +54,7 @@ pub enum Regularisation {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct KernelRidge {
     /// Width of the kernel.
-    pub width: Width,
+    pub width: Bandwidth,
     /// Penalty.
     pub lambda: Regularisation,
 }
@@ -62,7 +62,7 @@ pub struct KernelRidge {
 impl Default for KernelRidge {
     fn default() -> Self {
         let grid = (-5..=1).map(|e| 10_f64.powi(e)).collect();
-        Self { width: Width::Scatter(3.0), lambda: Regularisation::LeaveOneOut(grid) }
+        Self { width: Bandwidth::Scatter(3.0), lambda: Regularisation::LeaveOneOut(grid) }
     }
 }
 

@@ -9,7 +9,7 @@ use faer::MatRef;
 use crate::basis::design::Design;
 use crate::basis::kernel::Kernel;
 use crate::basis::normal_equations::Equations;
-use crate::basis::spec::Columns;
+use crate::basis::spec::BasisSpec;
 use crate::data::check;
 use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
@@ -17,7 +17,7 @@ use crate::error::Result;
 use crate::linalg;
 use crate::model::report::{Fit, Report, Trace};
 use crate::ridge::penalised::Penalised;
-use crate::stream::Sums;
+use crate::stream::SufficientStatistics;
 use crate::stream::summed::Summed;
 
 /// Ridge regression: minimises ‖Y − AF‖² + λ‖A‖² on standardised data.
@@ -73,7 +73,7 @@ impl Ridge {
     }
 
     /// Fits sums over columns of the same kernel.
-    pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
+    pub fn fit_sums(&self, columns: &BasisSpec, sums: &SufficientStatistics) -> Result<Fit> {
         columns.check_kernel(self.kernel)?;
         self.solve(&Summed::new(columns, sums)?)
     }

@@ -2,10 +2,10 @@
 
 use faer::{Mat, MatRef};
 
-use crate::basis::kernel::{Kernel, Width};
+use crate::basis::kernel::{Kernel, Bandwidth};
 use crate::basis::normal_equations;
 use crate::basis::normal_equations::Equations;
-use crate::basis::spec::Columns;
+use crate::basis::spec::BasisSpec;
 use crate::data::check;
 use crate::data::permutation::random_subset;
 use crate::data::problem::Problem;
@@ -19,7 +19,7 @@ use crate::model::report::{Fit, Report, Trace};
 use crate::ridge::penalised;
 use crate::ridge::penalised::Penalised;
 use crate::stream::summed::Summed;
-use crate::stream::{self, Sums};
+use crate::stream::{self, SufficientStatistics};
 
 /// Added to the kernel's diagonal of ones. Where the centres' Gaussians depend on each other,
 /// whitening divides the rounding of G by this: a smaller one leaves small λ unsolvable for many
@@ -89,7 +89,7 @@ pub enum PredictiveDeviation {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NystromRidge {
     /// Width of the kernel.
-    pub width: Width,
+    pub width: Bandwidth,
     /// What the standard deviation knows.
     pub deviation: PredictiveDeviation,
     /// Penalty. In a Gaussian process λ is the noise's variance over the signal's, whatever the
@@ -102,7 +102,7 @@ impl Default for NystromRidge {
     fn default() -> Self {
         let grid = (-4..=1).map(|e| 10_f64.powi(e)).collect();
         Self {
-            width: Width::Scatter(1.0),
+            width: Bandwidth::Scatter(1.0),
             deviation: PredictiveDeviation::Posterior,
             penalty: NystromRegularisation::CrossValidated(grid),
         }
@@ -128,9 +128,9 @@ impl NystromRidge {
         check::count(centres.len(), samples)?;
         check::indices("centres", centres, samples)?;
         let kernel = Kernel::Gaussian(self.width);
-        let columns = Columns::of(&problem, problem.features(), kernel, centres)?.centred();
+        let columns = BasisSpec::of(&problem, problem.features(), kernel, centres)?.centred();
         drop(problem);
-        let mut sums = Sums::new(&columns);
+        let mut sums = SufficientStatistics::new(&columns);
         for start in (0..samples).step_by(BATCH) {
             let width = BATCH.min(samples - start);
             sums.add(&columns, x.subcols(start, width), y.subcols(start, width))?;
@@ -147,7 +147,7 @@ impl NystromRidge {
     }
 
     /// Fits sums over Gaussian columns of the same width.
-    pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
+    pub fn fit_sums(&self, columns: &BasisSpec, sums: &SufficientStatistics) -> Result<Fit> {
         let grid = self.grid()?;
         columns.check_kernel(Kernel::Gaussian(self.width))?;
         let equations = Summed::new(columns, sums)?;

@@ -3,10 +3,10 @@
 use faer::{Mat, MatRef};
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Width};
+use crate::basis::kernel::{Kernel, Bandwidth};
 use crate::basis::normal_equations;
 use crate::basis::normal_equations::Equations;
-use crate::basis::spec::Columns;
+use crate::basis::spec::BasisSpec;
 use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
@@ -15,7 +15,7 @@ use crate::model::parts::Posterior;
 use crate::model::report::{Fit, Progress, Report};
 use crate::rvm::marginal_likelihood::ascent::Ascent;
 use crate::rvm::marginal_likelihood::targets::Targets;
-use crate::stream::Sums;
+use crate::stream::SufficientStatistics;
 use crate::stream::summed::Summed;
 
 /// The multivariate relevance vector machine (Thayananthan, Navaratnam, Stenger, Torr and Cipolla
@@ -68,7 +68,7 @@ pub struct MultiOutputRvm {
 impl Default for MultiOutputRvm {
     fn default() -> Self {
         Self {
-            kernel: Kernel::Gaussian(Width::Scatter(1.0)),
+            kernel: Kernel::Gaussian(Bandwidth::Scatter(1.0)),
             most: None,
             noise_floor: 1e-4,
             price: 0.02,
@@ -106,7 +106,7 @@ impl MultiOutputRvm {
     }
 
     /// Fits sums over columns of the same kernel.
-    pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
+    pub fn fit_sums(&self, columns: &BasisSpec, sums: &SufficientStatistics) -> Result<Fit> {
         columns.check_kernel(self.kernel)?;
         let summed = Summed::new(columns, sums)?;
         Ok(self.resume(&summed, &Vectors::default(), &|_| ())?.0)

@@ -4,7 +4,7 @@ use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Width};
+use crate::basis::kernel::{Kernel, Bandwidth};
 use crate::basis::normal_equations;
 use crate::basis::normal_equations::Equations;
 use crate::data::problem::Problem;
@@ -64,7 +64,7 @@ pub struct RelevanceVectorMachine {
 impl Default for RelevanceVectorMachine {
     fn default() -> Self {
         Self {
-            kernel: Kernel::Gaussian(Width::Scatter(3.0)),
+            kernel: Kernel::Gaussian(Bandwidth::Scatter(3.0)),
             noise_floor: 1e-4,
             price: 0.02,
             tolerance: 1e-3,

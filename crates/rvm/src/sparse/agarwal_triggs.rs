@@ -3,9 +3,9 @@
 use faer::{Mat, MatRef};
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Width};
+use crate::basis::kernel::{Kernel, Bandwidth};
 use crate::basis::normal_equations::Equations;
-use crate::basis::spec::Columns;
+use crate::basis::spec::BasisSpec;
 use crate::data::check;
 use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::linalg;
 use crate::model::report::{Fit, Report, Trace};
 use crate::ridge::penalised::Penalised;
-use crate::stream::Sums;
+use crate::stream::SufficientStatistics;
 use crate::stream::summed::Summed;
 
 /// Largest share of the columns that a step towards a count removes.
@@ -83,7 +83,7 @@ pub struct AgarwalTriggs {
 impl Default for AgarwalTriggs {
     fn default() -> Self {
         Self {
-            kernel: Kernel::Gaussian(Width::Scatter(1.0)),
+            kernel: Kernel::Gaussian(Bandwidth::Scatter(1.0)),
             nu: 0.3,
             stop: Stop::Threshold(1e-3),
             lambda: 0.1,
@@ -108,7 +108,7 @@ impl AgarwalTriggs {
     }
 
     /// Fits sums over columns of the same kernel.
-    pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
+    pub fn fit_sums(&self, columns: &BasisSpec, sums: &SufficientStatistics) -> Result<Fit> {
         columns.check_kernel(self.kernel)?;
         self.solve(&Summed::new(columns, sums)?)
     }

@@ -3,9 +3,9 @@
 use faer::{Mat, MatRef};
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Width};
+use crate::basis::kernel::{Kernel, Bandwidth};
 use crate::basis::normal_equations::Equations;
-use crate::basis::spec::Columns;
+use crate::basis::spec::BasisSpec;
 use crate::data::check;
 use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::linalg;
 use crate::model::report::{Fit, Report, Trace};
 use crate::ridge::penalised::Penalised;
-use crate::stream::Sums;
+use crate::stream::SufficientStatistics;
 use crate::stream::summed::Summed;
 
 /// A column with less than this share of its energy outside the columns chosen depends on them.
@@ -56,7 +56,7 @@ pub struct OrthogonalLeastSquares {
 
 impl Default for OrthogonalLeastSquares {
     fn default() -> Self {
-        let kernel = Kernel::Gaussian(Width::Scatter(1.0));
+        let kernel = Kernel::Gaussian(Bandwidth::Scatter(1.0));
         Self { kernel, count: 10, lambda: 1e-3, sweeps: 20 }
     }
 }
@@ -76,7 +76,7 @@ impl OrthogonalLeastSquares {
     }
 
     /// Fits sums over columns of the same kernel.
-    pub fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
+    pub fn fit_sums(&self, columns: &BasisSpec, sums: &SufficientStatistics) -> Result<Fit> {
         columns.check_kernel(self.kernel)?;
         self.solve(&Summed::new(columns, sums)?)
     }

@@ -3,15 +3,15 @@
 use faer::MatRef;
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Width};
+use crate::basis::kernel::{Kernel, Bandwidth};
 use crate::basis::normal_equations::Equations;
-use crate::basis::spec::Columns;
+use crate::basis::spec::BasisSpec;
 use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::model::report::{Fit, Report};
 use crate::sparse::agarwal_triggs::{AgarwalTriggs, Stop};
-use crate::stream::Sums;
+use crate::stream::SufficientStatistics;
 use crate::stream::summed::Summed;
 
 /// The paper's "both" (de Campos and Murray 2006, section 4): bridges over linear columns select
@@ -38,7 +38,7 @@ pub struct TwoStageSelection {
     /// When samples are dropped.
     pub samples: Stop,
     /// Width of the Gaussian kernels, on the features selected.
-    pub width: Width,
+    pub width: Bandwidth,
     /// ν/m > 0 of both stages, as in [`AgarwalTriggs::nu`].
     pub nu: f64,
 }
@@ -49,7 +49,7 @@ impl Default for TwoStageSelection {
         Self {
             features: stop,
             samples: stop,
-            width: Width::Scatter(1.0),
+            width: Bandwidth::Scatter(1.0),
             nu: AgarwalTriggs::default().nu,
         }
     }
@@ -75,14 +75,14 @@ impl TwoStageSelection {
     /// The first of two passes over a stream: the fit over linear columns, whose
     /// [`selected_features`](crate::Model::selected_features) the second pass reads. If there are
     /// none, it is the cascade's fit already.
-    pub fn fit_features(&self, linear: &Columns, sums: &Sums) -> Result<Fit> {
+    pub fn fit_features(&self, linear: &BasisSpec, sums: &SufficientStatistics) -> Result<Fit> {
         linear.check_kernel(Kernel::Linear)?;
         self.first(&Summed::new(linear, sums)?)
     }
 
     /// The second pass: the fit over Gaussian columns on the features that the `first` selected
-    /// ([`Columns::over`]).
-    pub fn fit_samples(&self, first: Fit, gaussian: &Columns, sums: &Sums) -> Result<Fit> {
+    /// ([`BasisSpec::over`]).
+    pub fn fit_samples(&self, first: Fit, gaussian: &BasisSpec, sums: &SufficientStatistics) -> Result<Fit> {
         gaussian.check_kernel(Kernel::Gaussian(self.width))?;
         let selected = first.model.selected_features();
         if let Some(&feature) = gaussian.features().iter().find(|f| !selected.contains(f)) {

@@ -6,16 +6,16 @@ pub(crate) mod summed;
 use faer::MatRef;
 use rayon::prelude::*;
 
-use crate::basis::spec::Columns;
+use crate::basis::spec::BasisSpec;
 use crate::error::{Error, Result};
 use crate::linalg;
-use crate::stream::parts::{MOST_SAMPLES, SumsParts, UNITS};
+use crate::stream::parts::{MOST_SAMPLES, SufficientStatisticsParts, UNITS};
 
 /// Samples whose products are formed together.
 const BLOCK: usize = 512;
 /// Columns of the products that one task computes.
 const WIDTH: usize = 96;
-/// All that a regression on [`Columns`] needs of its samples: the sums of the products of each
+/// All that a regression on [`BasisSpec`] needs of its samples: the sums of the products of each
 /// two among the p basis columns, the m standardised targets and the constant 1.
 ///
 /// That is G = Σ φφᵀ, B = Σ φyᵀ, Σ yyᵀ, Σ φ, Σ y and the number of samples: p + m + 1 numbers
@@ -29,25 +29,25 @@ const WIDTH: usize = 96;
 /// machine is the last bit of a block's products.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "SumsParts", into = "SumsParts"))]
-pub struct Sums {
-    parts: SumsParts,
+#[cfg_attr(feature = "serde", serde(try_from = "SufficientStatisticsParts", into = "SufficientStatisticsParts"))]
+pub struct SufficientStatistics {
+    parts: SufficientStatisticsParts,
 }
 
-impl Sums {
+impl SufficientStatistics {
     /// Sums over no samples yet: 16 bytes for each of (p + m + 1)(p + m + 2)/2 numbers.
-    pub fn new(columns: &Columns) -> Self {
+    pub fn new(columns: &BasisSpec) -> Self {
         let (size, outputs) = (columns.size(), columns.outputs());
         let all = size + outputs + 1;
         let packed = vec![0; all * (all + 1) / 2];
-        Self { parts: SumsParts { columns: columns.fingerprint(), size, outputs, packed } }
+        Self { parts: SufficientStatisticsParts { columns: columns.fingerprint(), size, outputs, packed } }
     }
 
     /// Adds samples: inputs K×n and targets m×n. On an error the sums are as they were.
     ///
     /// Blocks are cut from the first sample of `x` on: to have the same bits in another run, add
     /// the same samples in each call. Working memory is 512 × (p + m + 1) numbers.
-    pub fn add(&mut self, columns: &Columns, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<()> {
+    pub fn add(&mut self, columns: &BasisSpec, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<()> {
         self.check_columns(columns)?;
         columns.check_samples(x, y)?;
         self.check_room(x.ncols())?;
@@ -61,7 +61,7 @@ impl Sums {
 
     /// Adds the sums over other samples. On an error the sums are as they were.
     pub fn merge(&mut self, other: &Self) -> Result<()> {
-        let SumsParts { columns, size, outputs, .. } = other.parts;
+        let SufficientStatisticsParts { columns, size, outputs, .. } = other.parts;
         self.check_same(columns, size, outputs)?;
         self.check_room(other.samples())?;
         for (sum, other) in self.parts.packed.iter_mut().zip(&other.parts.packed) {
@@ -71,18 +71,18 @@ impl Sums {
     }
 
     /// Puts sums together from their parts, checked against each other.
-    pub fn from_parts(parts: SumsParts) -> Result<Self> {
+    pub fn from_parts(parts: SufficientStatisticsParts) -> Result<Self> {
         parts.check()?;
         Ok(Self { parts })
     }
 
     /// The sums' parts.
-    pub fn into_parts(self) -> SumsParts {
+    pub fn into_parts(self) -> SufficientStatisticsParts {
         self.parts
     }
 
     /// A look at the parts.
-    pub fn parts(&self) -> &SumsParts {
+    pub fn parts(&self) -> &SufficientStatisticsParts {
         &self.parts
     }
 
@@ -109,13 +109,13 @@ impl Sums {
     }
 
     /// Refuses columns that are not the ones summed.
-    fn check_columns(&self, columns: &Columns) -> Result<()> {
+    fn check_columns(&self, columns: &BasisSpec) -> Result<()> {
         self.check_same(columns.fingerprint(), columns.size(), columns.outputs())
     }
 
     /// The counts matter too: parts from outside may have any fingerprint.
     fn check_same(&self, columns: u64, size: usize, outputs: usize) -> Result<()> {
-        let SumsParts { columns: sums, size: summed, outputs: targets, .. } = self.parts;
+        let SufficientStatisticsParts { columns: sums, size: summed, outputs: targets, .. } = self.parts;
         if (sums, summed, targets) == (columns, size, outputs) {
             return Ok(());
         }
@@ -127,16 +127,16 @@ impl Sums {
     }
 }
 
-impl TryFrom<SumsParts> for Sums {
+impl TryFrom<SufficientStatisticsParts> for SufficientStatistics {
     type Error = Error;
 
-    fn try_from(parts: SumsParts) -> Result<Self> {
+    fn try_from(parts: SufficientStatisticsParts) -> Result<Self> {
         Self::from_parts(parts)
     }
 }
 
-impl From<Sums> for SumsParts {
-    fn from(sums: Sums) -> Self {
+impl From<SufficientStatistics> for SufficientStatisticsParts {
+    fn from(sums: SufficientStatistics) -> Self {
         sums.into_parts()
     }
 }

@@ -11,10 +11,10 @@ pub(super) const UNITS: f64 = 18_446_744_073_709_551_616.0;
 /// One, in the sums' units.
 const ONE: i128 = 1 << 64;
 
-/// Everything that [`Sums`](crate::Sums) are made of.
+/// Everything that [`SufficientStatistics`](crate::SufficientStatistics) are made of.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct SumsParts {
+pub struct SufficientStatisticsParts {
     /// Fingerprint of the columns.
     pub columns: u64,
     /// Number of basis columns p.
@@ -27,7 +27,7 @@ pub struct SumsParts {
     pub packed: Vec<i128>,
 }
 
-impl SumsParts {
+impl SufficientStatisticsParts {
     /// Number of samples.
     pub(super) fn samples(&self) -> usize {
         self.packed.last().map_or(0, |&units| (units / ONE) as usize)
@@ -51,5 +51,5 @@ impl SumsParts {
 }
 
 fn fault(field: &'static str, problem: &'static str, present: bool) -> Result<()> {
-    if present { Err(Error::SumsParts { field, problem }) } else { Ok(()) }
+    if present { Err(Error::SufficientStatisticsParts { field, problem }) } else { Ok(()) }
 }

@@ -3,15 +3,15 @@
 use faer::{Mat, MatRef};
 
 use crate::basis::normal_equations::Equations;
-use crate::basis::spec::Columns;
+use crate::basis::spec::BasisSpec;
 use crate::error::{Error, Result};
 use crate::linalg;
-use crate::stream::Sums;
+use crate::stream::SufficientStatistics;
 use crate::stream::parts::UNITS;
 
 /// Centred normal equations from sums.
 pub(crate) struct Summed<'a> {
-    columns: &'a Columns,
+    columns: &'a BasisSpec,
     samples: usize,
     means: Vec<f64>,
     target_means: Vec<f64>,
@@ -22,7 +22,7 @@ pub(crate) struct Summed<'a> {
 }
 
 impl<'a> Summed<'a> {
-    pub(crate) fn new(columns: &'a Columns, sums: &Sums) -> Result<Self> {
+    pub(crate) fn new(columns: &'a BasisSpec, sums: &SufficientStatistics) -> Result<Self> {
         sums.check_columns(columns)?;
         let samples = sums.samples();
         if samples == 0 {
@@ -44,7 +44,7 @@ impl<'a> Summed<'a> {
 }
 
 impl Equations for Summed<'_> {
-    fn columns(&self) -> &Columns {
+    fn columns(&self) -> &BasisSpec {
         self.columns
     }
 
@@ -101,7 +101,7 @@ struct Centred<'a> {
 }
 
 impl<'a> Centred<'a> {
-    fn new(sums: &'a Sums, all: usize) -> Self {
+    fn new(sums: &'a SufficientStatistics, all: usize) -> Self {
         let (packed, samples) = (sums.parts.packed.as_slice(), sums.samples() as f64);
         let mut products = Self { packed, all, samples, means: Vec::new() };
         products.means = (0..all).map(|k| products.sum(all - 1, k) / samples).collect();

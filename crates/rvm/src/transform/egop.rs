@@ -4,7 +4,7 @@ use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
 use crate::basis::kernel::{self, Kernel};
-use crate::basis::spec::Columns;
+use crate::basis::spec::BasisSpec;
 use crate::data::check;
 use crate::data::permutation::random_subset;
 use crate::data::problem::Problem;
@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::linalg;
 use crate::model::Model;
 use crate::ridge::nystrom::NystromRidge;
-use crate::stream::Sums;
+use crate::stream::SufficientStatistics;
 use crate::transform::affine_map::Projection;
 use crate::transform::learned_metric::{Group, Metric};
 use crate::transform::pca::{Block, of_blocks};
@@ -168,8 +168,8 @@ impl GradientMetric {
         let centres = random_subset(z.ncols(), self.centres, CENTRE_SEED);
         check::count(centres.len(), z.ncols())?;
         let kernel = Kernel::Gaussian(self.regression.width);
-        let columns = Columns::of(&problem, problem.features(), kernel, &centres)?.centred();
-        let mut sums = Sums::new(&columns);
+        let columns = BasisSpec::of(&problem, problem.features(), kernel, &centres)?.centred();
+        let mut sums = SufficientStatistics::new(&columns);
         sums.add(&columns, z, y)?;
         Ok(self.regression.fit_sums(&columns, &sums)?.model)
     }

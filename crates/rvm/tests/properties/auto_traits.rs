@@ -1,12 +1,12 @@
 //! Everything public can be sent to, and shared between, threads.
 
 use phalanx_rvm::{
-    Basis, Block, AgarwalTriggs, TwoStageSelection, Columns, Components, ConditionalDensity,
+    Basis, Block, AgarwalTriggs, TwoStageSelection, BasisSpec, Components, ConditionalDensity,
     ConditionalDensityParts, PredictiveDeviation, Error, Factor, Fit, OrthogonalLeastSquares, GradientMetric,
     Group, AugmentedRvm, Hypothesis, Kernel, KernelRidge, Regularisation, ArdRvm, Metric, Model,
     ModelParts, MultiOutputRvm, Network, NetworkOnComponents, NetworkParts, NystromRidge, NystromRegularisation,
-    Perceptron, Pilot, Posterior, Progress, Projected, Projection, ProjectionParts, Regressor,
-    Report, Ridge, Scratch, Standardiser, Stop, Sums, SumsParts, LengthScales, RelevanceVectorMachine, Trace, Width,
+    Perceptron, PilotSample, Posterior, Progress, Projected, Projection, ProjectionParts, Regressor,
+    Report, Ridge, Scratch, Standardiser, Stop, SufficientStatistics, SufficientStatisticsParts, LengthScales, RelevanceVectorMachine, Trace, Bandwidth,
 };
 
 const fn shared<T: Send + Sync>() {}
@@ -22,7 +22,7 @@ shared!(
     Block,
     AgarwalTriggs,
     TwoStageSelection,
-    Columns,
+    BasisSpec,
     Components,
     ConditionalDensity,
     ConditionalDensityParts,
@@ -50,7 +50,7 @@ shared!(
     NystromRidge,
     NystromRegularisation,
     Perceptron,
-    Pilot<'static>,
+    PilotSample<'static>,
     Posterior,
     Progress,
     Projected,
@@ -61,10 +61,10 @@ shared!(
     Scratch,
     Standardiser,
     Stop,
-    Sums,
-    SumsParts,
+    SufficientStatistics,
+    SufficientStatisticsParts,
     LengthScales,
     RelevanceVectorMachine,
     Trace,
-    Width,
+    Bandwidth,
 );

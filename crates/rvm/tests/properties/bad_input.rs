@@ -4,7 +4,7 @@ use faer::Mat;
 use phalanx_rvm::{
     AgarwalTriggs, TwoStageSelection, Error, OrthogonalLeastSquares, Kernel, KernelRidge, Regularisation, ArdRvm,
     MultiOutputRvm, NystromRidge, NystromRegularisation, ProblemSize, Regressor, Ridge, Standardiser, Stop, RelevanceVectorMachine,
-    Width,
+    Bandwidth,
 };
 use proptest::prelude::*;
 
@@ -126,10 +126,10 @@ fn hyper_parameters_out_of_range_are_named() {
         assert_eq!(name(KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y)), "lambda");
         let penalty = NystromRegularisation::CrossValidated(vec![1.0, bad]);
         assert_eq!(name(NystromRidge { penalty, ..NystromRidge::default() }.fit(x, y)), "lambda");
-        let kernel = Kernel::Gaussian(Width::Scatter(bad));
+        let kernel = Kernel::Gaussian(Bandwidth::Scatter(bad));
         assert_eq!(name(AgarwalTriggs { kernel, ..bridges }.fit(x, y)), "c");
     }
-    let kernel = Kernel::Gaussian(Width::Beta(0.0));
+    let kernel = Kernel::Gaussian(Bandwidth::Beta(0.0));
     assert_eq!(name(RelevanceVectorMachine { kernel, ..tipping }.fit(x, y)), "beta");
     assert_eq!(name(AgarwalTriggs { stop: Stop::Threshold(-1.0), ..bridges }.fit(x, y)), "threshold");
     assert_eq!(name(AgarwalTriggs { max_iterations: 0, ..bridges }.fit(x, y)), "max_iterations");

@@ -1,7 +1,7 @@
 //! Kernel ridge regression against refitting without each sample, and as a Gaussian process.
 
 use faer::{Mat, MatRef};
-use phalanx_rvm::{KernelRidge, Regularisation, Regressor, Standardiser, Width};
+use phalanx_rvm::{KernelRidge, Regularisation, Regressor, Standardiser, Bandwidth};
 use proptest::prelude::*;
 
 use crate::problems::{smooth, solve};
@@ -24,7 +24,7 @@ fn bordered(z: MatRef<'_, f64>, kept: &[usize], lambda: f64) -> Mat<f64> {
 }
 
 fn fitter(lambda: Regularisation) -> KernelRidge {
-    KernelRidge { width: Width::Beta(BETA), lambda }
+    KernelRidge { width: Bandwidth::Beta(BETA), lambda }
 }
 
 proptest! {

@@ -2,8 +2,8 @@
 
 use phalanx_rvm::faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, Columns, PredictiveDeviation, Error, GradientMetric, Group, Metric, NystromRidge, NystromRegularisation, Pilot,
-    Projected, Projection, ProjectionParts, Regressor, Scratch, Sums, Width, random_subset,
+    Block, BasisSpec, PredictiveDeviation, Error, GradientMetric, Group, Metric, NystromRidge, NystromRegularisation, PilotSample,
+    Projected, Projection, ProjectionParts, Regressor, Scratch, SufficientStatistics, Bandwidth, random_subset,
 };
 use proptest::prelude::*;
 use rand_core::{Rng, SeedableRng};
@@ -32,7 +32,7 @@ fn targets(x: MatRef<'_, f64>) -> Mat<f64> {
 fn learner(rank: usize, rounds: usize) -> GradientMetric {
     let penalty = NystromRegularisation::CrossValidated(vec![1e-4, 1e-3, 1e-2, 0.1]);
     let regression =
-        NystromRidge { width: Width::Scatter(3.0), deviation: PredictiveDeviation::CrossValidated, penalty };
+        NystromRidge { width: Bandwidth::Scatter(3.0), deviation: PredictiveDeviation::CrossValidated, penalty };
     GradientMetric { regression, rounds, centres: 200, gradients: 100, rank }
 }
 
@@ -78,10 +78,10 @@ fn fit(metric: &Metric, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Projected {
     let model = |group: usize| {
         let (x, y) = (metric.part(group, z.as_ref()), metric.targets(group, y));
         let y_pilot = y.subcols(0, 150);
-        let pilot = Pilot { x: x.subcols(0, 150), y: y_pilot, samples: &samples };
+        let pilot = PilotSample { x: x.subcols(0, 150), y: y_pilot, samples: &samples };
         let regression = learner(3, 1).regression;
-        let columns = Columns::in_proportion(&pilot, regression.width).unwrap();
-        let mut sums = Sums::new(&columns);
+        let columns = BasisSpec::in_proportion(&pilot, regression.width).unwrap();
+        let mut sums = SufficientStatistics::new(&columns);
         sums.add(&columns, x, y.as_ref()).unwrap();
         regression.fit_sums(&columns, &sums).unwrap().model
     };

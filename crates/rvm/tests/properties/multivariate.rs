@@ -4,7 +4,7 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Columns, Kernel, MultiOutputRvm, Pilot, Regressor, Standardiser, Sums, RelevanceVectorMachine, Width,
+    BasisSpec, Kernel, MultiOutputRvm, PilotSample, Regressor, Standardiser, SufficientStatistics, RelevanceVectorMachine, Bandwidth,
 };
 use proptest::prelude::*;
 
@@ -163,7 +163,7 @@ proptest! {
         let half = source.matrix(2, 30);
         let x = Mat::from_fn(2, 60, |i, t| half[(i, t % 30)]);
         let y = Mat::from_fn(2, 60, |j, t| (3.0 * x[(j, t)]).sin() * x[(1 - j, t)]);
-        let kernel = Kernel::Gaussian(Width::Scatter(c));
+        let kernel = Kernel::Gaussian(Bandwidth::Scatter(c));
         let rvm = MultiOutputRvm { kernel, ..MultiOutputRvm::default() };
         let model = rvm.fit(x.as_ref(), y.as_ref())?.model;
         let (mean, std) = model.predict_with_std(x.as_ref())?;
@@ -175,9 +175,9 @@ proptest! {
         let (x, y) = smooth(seed, 6, 3, 50);
         let rvm = MultiOutputRvm { kernel: Kernel::Linear, ..MultiOutputRvm::default() };
         let all: Vec<usize> = (0..50).collect();
-        let pilot = Pilot { x: x.as_ref(), y: y.as_ref(), samples: &all };
-        let columns = Columns::new(&pilot, Kernel::Linear)?;
-        let mut sums = Sums::new(&columns);
+        let pilot = PilotSample { x: x.as_ref(), y: y.as_ref(), samples: &all };
+        let columns = BasisSpec::new(&pilot, Kernel::Linear)?;
+        let mut sums = SufficientStatistics::new(&columns);
         sums.add(&columns, x.as_ref(), y.as_ref())?;
         let (streamed, whole) = (rvm.fit_sums(&columns, &sums)?, rvm.fit(x.as_ref(), y.as_ref())?);
         let (a, b) = (streamed.model.predict(x.as_ref())?, whole.model.predict(x.as_ref())?);

@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Kernel, KernelRidge, Regularisation, NystromRidge, NystromRegularisation, Pilot, Regressor, Standardiser, Sums, Width,
+    Kernel, KernelRidge, Regularisation, NystromRidge, NystromRegularisation, PilotSample, Regressor, Standardiser, SufficientStatistics, Bandwidth,
     random_subset,
 };
 use proptest::prelude::*;
@@ -15,7 +15,7 @@ const BETA: f64 = 0.2;
 const JITTER: f64 = 1e-6;
 
 fn nystrom(penalty: NystromRegularisation) -> NystromRidge {
-    NystromRidge { width: Width::Beta(BETA), penalty, ..NystromRidge::default() }
+    NystromRidge { width: Bandwidth::Beta(BETA), penalty, ..NystromRidge::default() }
 }
 
 /// exp(−β‖a − b‖²) for each column a of the one and b of the other.
@@ -53,7 +53,7 @@ proptest! {
     #[test]
     fn all_samples_as_centres_are_kernel_ridge(seed in any::<u64>(), lambda in 0.01..2.0_f64) {
         let (x, y) = smooth(seed, 3, 2, 40);
-        let dense = KernelRidge { width: Width::Beta(BETA), lambda: Regularisation::Given(lambda) };
+        let dense = KernelRidge { width: Bandwidth::Beta(BETA), lambda: Regularisation::Given(lambda) };
         let expected = dense.fit(x.as_ref(), y.as_ref())?.model.predict(x.as_ref())?;
         let fit = nystrom(NystromRegularisation::Given(lambda)).fit(x.as_ref(), y.as_ref())?;
         let difference = fit.model.predict(x.as_ref())? - expected;
@@ -163,10 +163,10 @@ fn repeated_centres_are_solved() {
     let pick = |from: &Mat<f64>| columns(from.as_ref(), &twice);
     let (x2, y2) = (pick(&x), pick(&y));
     let samples: Vec<usize> = (0..60).collect();
-    let pilot = Pilot { x: x2.as_ref(), y: y2.as_ref(), samples: &samples };
+    let pilot = PilotSample { x: x2.as_ref(), y: y2.as_ref(), samples: &samples };
     let fitter = nystrom(NystromRegularisation::Given(0.1));
-    let doubled = phalanx_rvm::Columns::new(&pilot, Kernel::Gaussian(fitter.width)).unwrap();
-    let mut sums = Sums::new(&doubled);
+    let doubled = phalanx_rvm::BasisSpec::new(&pilot, Kernel::Gaussian(fitter.width)).unwrap();
+    let mut sums = SufficientStatistics::new(&doubled);
     sums.add(&doubled, x.as_ref(), y.as_ref()).unwrap();
     let found = fitter.fit_sums(&doubled, &sums).unwrap().model.predict(x.as_ref()).unwrap();
     let once = fitter.fit(x.as_ref(), y.as_ref()).unwrap().model.predict(x.as_ref()).unwrap();

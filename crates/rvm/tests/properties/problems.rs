@@ -3,14 +3,14 @@
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
     AgarwalTriggs, TwoStageSelection, Fit, OrthogonalLeastSquares, Kernel, KernelRidge, ArdRvm, MultiOutputRvm,
-    NystromRidge, Result, Ridge, Stop, RelevanceVectorMachine, Width,
+    NystromRidge, Result, Ridge, Stop, RelevanceVectorMachine, Bandwidth,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
 pub(crate) type Fitter = fn(MatRef<'_, f64>, MatRef<'_, f64>) -> Result<Fit>;
 
-pub(crate) const GAUSSIAN: Kernel = Kernel::Gaussian(Width::Scatter(1.0));
+pub(crate) const GAUSSIAN: Kernel = Kernel::Gaussian(Bandwidth::Scatter(1.0));
 
 /// Every fitter, with the kernels that it knows.
 pub(crate) const FITTERS: [(&str, Fitter); 13] = [

@@ -2,9 +2,9 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, AgarwalTriggs, TwoStageSelection, Columns, Error, OrthogonalLeastSquares, GradientMetric, Kernel, KernelRidge,
-    ArdRvm, Model, MultiOutputRvm, NystromRidge, Perceptron, Pilot, Projected, Regressor, Result,
-    Ridge, Stop, Sums, RelevanceVectorMachine, Width, random_subset,
+    Block, AgarwalTriggs, TwoStageSelection, BasisSpec, Error, OrthogonalLeastSquares, GradientMetric, Kernel, KernelRidge,
+    ArdRvm, Model, MultiOutputRvm, NystromRidge, Perceptron, PilotSample, Projected, Regressor, Result,
+    Ridge, Stop, SufficientStatistics, RelevanceVectorMachine, Bandwidth, random_subset,
 };
 
 use crate::problems::{GAUSSIAN, Source, columns};
@@ -98,15 +98,15 @@ const ROWS: [(usize, usize); 3] = [(1000, 1001), (2000, 1999), (4000, 4003)];
 /// The dense fitters take all samples and choose none; of 7,000 they would take minutes.
 const FEW_ROWS: [(usize, usize); 1] = [(100, 101)];
 
-fn pilot_columns(x: &Mat<f64>, y: &Mat<f64>, kernel: Kernel, features: &[usize]) -> Columns {
+fn pilot_columns(x: &Mat<f64>, y: &Mat<f64>, kernel: Kernel, features: &[usize]) -> BasisSpec {
     let samples = random_subset(x.ncols(), CENTRES, 1);
     let [pilot_x, pilot_y] = [x, y].map(|all| columns(all.as_ref(), &samples));
-    let pilot = Pilot { x: pilot_x.as_ref(), y: pilot_y.as_ref(), samples: &samples };
-    Columns::over(&pilot, kernel, features).unwrap()
+    let pilot = PilotSample { x: pilot_x.as_ref(), y: pilot_y.as_ref(), samples: &samples };
+    BasisSpec::over(&pilot, kernel, features).unwrap()
 }
 
-fn summed(columns: &Columns, x: &Mat<f64>, y: &Mat<f64>) -> Sums {
-    let mut sums = Sums::new(columns);
+fn summed(columns: &BasisSpec, x: &Mat<f64>, y: &Mat<f64>) -> SufficientStatistics {
+    let mut sums = SufficientStatistics::new(columns);
     sums.add(columns, x.as_ref(), y.as_ref()).unwrap();
     sums
 }
@@ -114,7 +114,7 @@ fn summed(columns: &Columns, x: &Mat<f64>, y: &Mat<f64>) -> Sums {
 const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 
 /// Fits sums over a random pilot's columns.
-fn streamed(kernel: Kernel, fit: impl Fn(&Columns, &Sums) -> Result<phalanx_rvm::Fit>) {
+fn streamed(kernel: Kernel, fit: impl Fn(&BasisSpec, &SufficientStatistics) -> Result<phalanx_rvm::Fit>) {
     alike(&ROWS, |x, y| {
         let columns = pilot_columns(x, y, kernel, &ALL);
         of_model(&fit(&columns, &summed(&columns, x, y)).unwrap().model)
@@ -238,9 +238,9 @@ fn a_pilot_that_misses_what_varies_is_refused_by_name() {
     let (x, y) = motion(1000);
     let samples: Vec<usize> = (0..CENTRES).map(|k| k * x.ncols() / CENTRES).collect();
     let [pilot_x, pilot_y] = [&x, &y].map(|all| columns(all.as_ref(), &samples));
-    let pilot = Pilot { x: pilot_x.as_ref(), y: pilot_y.as_ref(), samples: &samples };
-    let columns = Columns::new(&pilot, Kernel::Gaussian(Width::Scatter(1.0))).unwrap();
-    let refused = Sums::new(&columns).add(&columns, x.as_ref(), y.as_ref()).unwrap_err();
+    let pilot = PilotSample { x: pilot_x.as_ref(), y: pilot_y.as_ref(), samples: &samples };
+    let columns = BasisSpec::new(&pilot, Kernel::Gaussian(Bandwidth::Scatter(1.0))).unwrap();
+    let refused = SufficientStatistics::new(&columns).add(&columns, x.as_ref(), y.as_ref()).unwrap_err();
     assert!(matches!(refused, Error::ConstantInPilot { what: "y", row: 2, .. }), "{refused}");
     assert!(refused.to_string().contains("at random"), "{refused}");
 }

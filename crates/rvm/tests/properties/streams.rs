@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    AgarwalTriggs, TwoStageSelection, Columns, Error, Fit, OrthogonalLeastSquares, Kernel, Pilot, Regressor, Result,
-    Ridge, Stop, Sums, SumsParts, Width, random_subset,
+    AgarwalTriggs, TwoStageSelection, BasisSpec, Error, Fit, OrthogonalLeastSquares, Kernel, PilotSample, Regressor, Result,
+    Ridge, Stop, SufficientStatistics, SufficientStatisticsParts, Bandwidth, random_subset,
 };
 use proptest::prelude::*;
 
@@ -14,13 +14,13 @@ use crate::problems::{GAUSSIAN, Source, close, smooth};
 use crate::property;
 
 /// All samples as the pilot: then sums and memory have the same columns.
-pub(crate) fn whole(x: MatRef<'_, f64>, y: MatRef<'_, f64>, kernel: Kernel) -> Result<Columns> {
+pub(crate) fn whole(x: MatRef<'_, f64>, y: MatRef<'_, f64>, kernel: Kernel) -> Result<BasisSpec> {
     let samples: Vec<usize> = (0..x.ncols()).collect();
-    Columns::new(&Pilot { x, y, samples: &samples }, kernel)
+    BasisSpec::new(&PilotSample { x, y, samples: &samples }, kernel)
 }
 
-pub(crate) fn summed(columns: &Columns, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Sums> {
-    let mut sums = Sums::new(columns);
+pub(crate) fn summed(columns: &BasisSpec, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<SufficientStatistics> {
+    let mut sums = SufficientStatistics::new(columns);
     sums.add(columns, x, y)?;
     Ok(sums)
 }
@@ -31,8 +31,8 @@ const CALL: usize = 700;
 const PILOT_SEED: u64 = 1;
 
 /// Adds `calls` of the stream, each cut into a block of 512 and a rest.
-fn add(columns: &Columns, x: &Mat<f64>, y: &Mat<f64>, calls: Range<usize>) -> Sums {
-    let mut sums = Sums::new(columns);
+fn add(columns: &BasisSpec, x: &Mat<f64>, y: &Mat<f64>, calls: Range<usize>) -> SufficientStatistics {
+    let mut sums = SufficientStatistics::new(columns);
     for call in calls {
         let (start, width) = (call * CALL, CALL.min(x.ncols() - call * CALL));
         sums.add(columns, x.subcols(start, width), y.subcols(start, width)).unwrap();
@@ -41,11 +41,11 @@ fn add(columns: &Columns, x: &Mat<f64>, y: &Mat<f64>, calls: Range<usize>) -> Su
 }
 
 /// A tenth of the samples as the pilot.
-fn pilot_columns(x: &Mat<f64>, y: &Mat<f64>, kernel: Kernel) -> Columns {
+fn pilot_columns(x: &Mat<f64>, y: &Mat<f64>, kernel: Kernel) -> BasisSpec {
     let samples = random_subset(x.ncols(), x.ncols().div_ceil(10), PILOT_SEED);
     let pick = |from: &Mat<f64>| crate::problems::columns(from.as_ref(), &samples);
     let (x, y) = (pick(x), pick(y));
-    Columns::new(&Pilot { x: x.as_ref(), y: y.as_ref(), samples: &samples }, kernel).unwrap()
+    BasisSpec::new(&PilotSample { x: x.as_ref(), y: y.as_ref(), samples: &samples }, kernel).unwrap()
 }
 
 #[test]
@@ -56,10 +56,10 @@ fn shards_in_any_order_at_any_number_of_threads_have_the_bits_of_one_run() {
         let one = add(&columns, &x, &y, 0..8).into_parts();
         for threads in [1, 2, 8] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let shards: [Sums; 4] =
+            let shards: [SufficientStatistics; 4] =
                 pool.install(|| [0, 1, 2, 3].map(|i| add(&columns, &x, &y, 2 * i..2 * i + 2)));
             for order in [[0, 1, 2, 3], [2, 0, 3, 1], [3, 2, 1, 0]] {
-                let mut merged = Sums::new(&columns);
+                let mut merged = SufficientStatistics::new(&columns);
                 for shard in order {
                     merged.merge(&shards[shard]).unwrap();
                 }
@@ -68,9 +68,9 @@ fn shards_in_any_order_at_any_number_of_threads_have_the_bits_of_one_run() {
         }
         #[cfg(feature = "serde")]
         {
-            let sums = Sums::from_parts(one).unwrap();
+            let sums = SufficientStatistics::from_parts(one).unwrap();
             let bytes = postcard::to_stdvec(&sums).unwrap();
-            assert_eq!(postcard::from_bytes::<Sums>(&bytes).unwrap(), sums);
+            assert_eq!(postcard::from_bytes::<SufficientStatistics>(&bytes).unwrap(), sums);
         }
     }
 }
@@ -80,7 +80,7 @@ type Both = (
     &'static str,
     Kernel,
     fn(MatRef<'_, f64>, MatRef<'_, f64>) -> Result<Fit>,
-    fn(&Columns, &Sums) -> Result<Fit>,
+    fn(&BasisSpec, &SufficientStatistics) -> Result<Fit>,
 );
 
 fn ridge() -> Ridge {
@@ -144,11 +144,11 @@ proptest! {
             ..TwoStageSelection::default()
         };
         let samples: Vec<usize> = (0..60).collect();
-        let pilot = Pilot { x: x.as_ref(), y: y.as_ref(), samples: &samples };
-        let linear = Columns::new(&pilot, Kernel::Linear)?;
+        let pilot = PilotSample { x: x.as_ref(), y: y.as_ref(), samples: &samples };
+        let linear = BasisSpec::new(&pilot, Kernel::Linear)?;
         let first = cascade.fit_features(&linear, &summed(&linear, x.as_ref(), y.as_ref())?)?;
         let kernel = Kernel::Gaussian(cascade.width);
-        let gaussian = Columns::over(&pilot, kernel, first.model.selected_features())?;
+        let gaussian = BasisSpec::over(&pilot, kernel, first.model.selected_features())?;
         let sums = summed(&gaussian, x.as_ref(), y.as_ref())?;
         let fit = cascade.fit_samples(first, &gaussian, &sums)?;
         prop_assert_eq!(fit.report.traces.len(), 2);
@@ -163,8 +163,8 @@ proptest! {
         let (k, m, p) = (4, 2, 30);
         let samples: Vec<usize> = (0..p).collect();
         let (px, py) = (x.as_ref().subcols(0, p), y.as_ref().subcols(0, p));
-        let kernel = Kernel::Gaussian(Width::Beta(0.1));
-        let columns = Columns::new(&Pilot { x: px, y: py, samples: &samples }, kernel)?;
+        let kernel = Kernel::Gaussian(Bandwidth::Beta(0.1));
+        let columns = BasisSpec::new(&PilotSample { x: px, y: py, samples: &samples }, kernel)?;
         let scale = |from: MatRef<'_, f64>, of: MatRef<'_, f64>| {
             phalanx_rvm::Standardiser::fit(of).and_then(|s| s.apply(from))
         };
@@ -205,7 +205,7 @@ proptest! {
             let mut parts = summed(&columns, x.as_ref(), y.as_ref())?.into_parts();
             let place = place.index(parts.packed.len());
             parts.packed[place] = value >> shift;
-            if let Ok(sums) = Sums::from_parts(parts) {
+            if let Ok(sums) = SufficientStatistics::from_parts(parts) {
                 // Whether it can be solved is its own business; that it returns is ours.
                 let _ = fit(&columns, &sums);
             }
@@ -214,7 +214,7 @@ proptest! {
 }
 
 /// A change to the parts of sums.
-type Damage = fn(&mut SumsParts);
+type Damage = fn(&mut SufficientStatisticsParts);
 
 #[test]
 fn parts_that_do_not_fit_are_named() {
@@ -235,8 +235,8 @@ fn parts_that_do_not_fit_are_named() {
     for (expected, damage) in damages {
         let mut parts = sums.clone().into_parts();
         damage(&mut parts);
-        match Sums::from_parts(parts) {
-            Err(Error::SumsParts { field, .. }) => assert_eq!(field, expected),
+        match SufficientStatistics::from_parts(parts) {
+            Err(Error::SufficientStatisticsParts { field, .. }) => assert_eq!(field, expected),
             other => panic!("{expected}: {other:?}"),
         }
     }
@@ -248,9 +248,9 @@ fn sums_of_other_counts_belong_to_no_columns() {
     let (x, y) = smooth(4, 5, 3, 30);
     let columns = whole(x.as_ref(), y.as_ref(), Kernel::Linear).unwrap();
     let own = summed(&columns, x.as_ref(), y.as_ref()).unwrap();
-    let SumsParts { columns: fingerprint, size, outputs, packed } = own.clone().into_parts();
-    let parts = SumsParts { columns: fingerprint, size: size + 1, outputs: outputs - 1, packed };
-    let mut claimed = Sums::from_parts(parts).unwrap();
+    let SufficientStatisticsParts { columns: fingerprint, size, outputs, packed } = own.clone().into_parts();
+    let parts = SufficientStatisticsParts { columns: fingerprint, size: size + 1, outputs: outputs - 1, packed };
+    let mut claimed = SufficientStatistics::from_parts(parts).unwrap();
     let other = |result| matches!(result, Err(Error::OtherColumns { .. }));
     assert!(other(claimed.add(&columns, x.as_ref(), y.as_ref())));
     assert!(other(claimed.merge(&own)));
@@ -274,7 +274,7 @@ fn samples_that_cannot_be_summed_are_named_and_change_nothing() {
     assert!(matches!(sums.add(&columns, x.as_ref(), short), Err(Error::Shape { .. })));
     let other = whole(x.as_ref().subcols(0, 29), short, GAUSSIAN).unwrap();
     assert!(matches!(sums.add(&other, x.as_ref(), y.as_ref()), Err(Error::OtherColumns { .. })));
-    assert!(matches!(sums.merge(&Sums::new(&other)), Err(Error::OtherColumns { .. })));
+    assert!(matches!(sums.merge(&SufficientStatistics::new(&other)), Err(Error::OtherColumns { .. })));
     assert_eq!(sums, before);
 }
 
@@ -294,9 +294,9 @@ fn a_target_that_only_the_pilot_knows_as_constant_is_named() {
 fn more_samples_than_sums_can_hold_are_named() {
     let (x, y) = smooth(4, 2, 1, 30);
     let columns = whole(x.as_ref(), y.as_ref(), Kernel::Linear).unwrap();
-    let mut parts = Sums::new(&columns).into_parts();
+    let mut parts = SufficientStatistics::new(&columns).into_parts();
     *parts.packed.last_mut().unwrap() = (1 << 30) << 64;
-    let mut sums = Sums::from_parts(parts).unwrap();
+    let mut sums = SufficientStatistics::from_parts(parts).unwrap();
     let too_many = Error::TooManySamples { samples: (1 << 30) + 30, limit: 1 << 30 };
     assert_eq!(sums.add(&columns, x.as_ref(), y.as_ref()), Err(too_many.clone()));
     assert_eq!(sums.merge(&summed(&columns, x.as_ref(), y.as_ref()).unwrap()), Err(too_many));
@@ -312,14 +312,14 @@ fn fitters_name_sums_that_are_not_theirs() {
         let own = if kernel == Kernel::Linear { &linear } else { &gaussian };
         let other = if kernel == Kernel::Linear { &gaussian } else { &linear };
         assert!(matches!(fit(other, &sums), Err(Error::OtherKernel { .. })), "{name}");
-        let empty = fit(own, &Sums::new(own));
+        let empty = fit(own, &SufficientStatistics::new(own));
         assert!(matches!(empty, Err(Error::Empty { what: "sums", .. })), "{name}");
     }
     let refused = ridge().fit_sums(&gaussian, &sums);
     assert!(matches!(refused, Err(Error::OtherColumns { .. })));
     let cascade = TwoStageSelection { features: Stop::Count(2), ..TwoStageSelection::default() };
     let first = cascade.fit_features(&linear, &sums).unwrap();
-    let refused = cascade.fit_samples(first, &gaussian, &Sums::new(&gaussian));
+    let refused = cascade.fit_samples(first, &gaussian, &SufficientStatistics::new(&gaussian));
     assert!(matches!(refused, Err(Error::NotSelected { .. })));
 }
 
@@ -327,13 +327,13 @@ fn fitters_name_sums_that_are_not_theirs() {
 fn features_must_ascend_and_be_there() {
     let (x, y) = smooth(4, 3, 1, 10);
     let samples: Vec<usize> = (0..10).collect();
-    let pilot = Pilot { x: x.as_ref(), y: y.as_ref(), samples: &samples };
+    let pilot = PilotSample { x: x.as_ref(), y: y.as_ref(), samples: &samples };
     for (features, feature) in [(&[0, 3][..], 3), (&[1, 0], 0), (&[1, 1], 1)] {
-        let refused = Columns::over(&pilot, Kernel::Linear, features);
+        let refused = BasisSpec::over(&pilot, Kernel::Linear, features);
         assert_eq!(refused, Err(Error::Index { what: "features", index: feature, available: 3 }));
     }
-    let short = Pilot { samples: &samples[1..], ..pilot };
-    assert!(matches!(Columns::new(&short, GAUSSIAN), Err(Error::Shape { .. })));
+    let short = PilotSample { samples: &samples[1..], ..pilot };
+    assert!(matches!(BasisSpec::new(&short, GAUSSIAN), Err(Error::Shape { .. })));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Tipping's machine from outside: its evidence, its sparsity, its honesty.
 
 use faer::Mat;
-use phalanx_rvm::{Kernel, Regressor, RelevanceVectorMachine, Width};
+use phalanx_rvm::{Kernel, Regressor, RelevanceVectorMachine, Bandwidth};
 use proptest::prelude::*;
 
 use crate::problems::{GAUSSIAN, Source, smooth};
@@ -53,7 +53,7 @@ proptest! {
         let half = source.matrix(2, 30);
         let x = Mat::from_fn(2, 60, |i, t| half[(i, t % 30)]);
         let y = Mat::from_fn(1, 60, |_, t| (3.0 * x[(0, t)]).sin() * x[(1, t)]);
-        let kernel = Kernel::Gaussian(Width::Scatter(c));
+        let kernel = Kernel::Gaussian(Bandwidth::Scatter(c));
         let model = RelevanceVectorMachine { kernel, ..RelevanceVectorMachine::default() }.fit(x.as_ref(), y.as_ref())?.model;
         let (mean, std) = model.predict_with_std(x.as_ref())?;
         prop_assert!(mean.norm_max().is_finite() && std.norm_max().is_finite());
@@ -67,7 +67,7 @@ fn sinc_is_learnt_from_few_vectors() {
     let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
     let noise: Vec<f64> = (0..200).map(|_| 0.1 * 3_f64.sqrt() * source.uniform()).collect();
     let y = Mat::from_fn(1, 200, |_, t| sinc(x[(0, t)]) + noise[t]);
-    let kernel = Kernel::Gaussian(Width::Scatter(7.0));
+    let kernel = Kernel::Gaussian(Bandwidth::Scatter(7.0));
     let model = RelevanceVectorMachine { kernel, ..RelevanceVectorMachine::default() }.fit(x.as_ref(), y.as_ref()).unwrap().model;
     assert!(model.kept_samples().len() <= 12, "{:?}", model.kept_samples());
     assert!((model.noise()[0] / 0.1 - 1.0).abs() < 0.15, "{:?}", model.noise());

@@ -6,7 +6,7 @@ mod lbfgs;
 use faer::{Mat, MatRef};
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Width};
+use crate::basis::kernel::{Kernel, Bandwidth};
 use crate::data::check;
 use crate::data::problem::Problem;
 use crate::data::scaler::Standardiser;
@@ -132,7 +132,7 @@ impl ArdRvm {
     }
 
     /// The width to start from, once the settings are found in range.
-    fn start(&self) -> Result<Width> {
+    fn start(&self) -> Result<Bandwidth> {
         let Kernel::Gaussian(width) = self.rvm.kernel else {
             return Err(Error::NoWidth);
         };
@@ -187,7 +187,7 @@ impl Learning {
         }
         let inputs = Standardiser::from_parts(self.problem.inputs.mean().to_vec(), scale)?;
         let scaled = Problem::scaled(inputs, x, y)?;
-        let design = Design::full(&scaled, Kernel::Gaussian(Width::Beta(1.0)))?;
+        let design = Design::full(&scaled, Kernel::Gaussian(Bandwidth::Beta(1.0)))?;
         rvm.resume(&design, &self.vectors, observe)
     }
 
