@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
 use phalanx_rvm::{
-    ConditionalDensity, ConditionalDensityParts, Model, ModelParts, NetworkOnComponents, Projected,
+    ConditionalDensity, ConditionalDensityParts, Model, ModelParts, PcaMlp, Projected,
 };
 use serde::{Deserialize, Serialize};
 
@@ -29,7 +29,7 @@ struct Payload<'a> {
 enum Stored<'a> {
     Joint(Cow<'a, ModelParts>),
     Projected(Cow<'a, Projected>),
-    Network(Cow<'a, NetworkOnComponents>),
+    Network(Cow<'a, PcaMlp>),
 }
 
 impl Estimator {

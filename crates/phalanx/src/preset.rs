@@ -2,7 +2,7 @@
 
 use phalanx_codebook::KMeans;
 use phalanx_multiview::Vocabulary;
-use phalanx_rvm::{PredictiveDeviation, GradientMetric, NystromRidge, NystromRegularisation, Perceptron, Bandwidth};
+use phalanx_rvm::{PredictiveDeviation, GradientMetric, NystromRidge, NystromRegularisation, MlpTrainer, Bandwidth};
 
 use crate::{
     Description, Framing, LearntMetric, NetworkTraining, OrientationRule, Regressor, Training,
@@ -77,6 +77,6 @@ impl Preset {
 /// need be left out.
 fn network(width: usize, epochs: usize) -> Regressor {
     let perceptron =
-        Perceptron { hidden: vec![width; 3], epochs, dropout: 0.05, ..Perceptron::default() };
+        MlpTrainer { hidden: vec![width; 3], epochs, dropout: 0.05, ..MlpTrainer::default() };
     Regressor::Network(NetworkTraining { pilot: 4000, components: 120, perceptron })
 }

@@ -1,6 +1,6 @@
 //! The fitted regressor of an estimator.
 use phalanx_rvm::Regressor as _;
-use phalanx_rvm::{Model, NetworkOnComponents, Projected, Scratch};
+use phalanx_rvm::{Model, PcaMlp, Projected, Scratch};
 
 /// A fitted regressor from descriptors to poses.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,7 +11,7 @@ pub enum Regression {
     /// A model for each digit, with a distance of its own.
     Projected(Projected),
     /// A network of all numbers of the pose, on the descriptor's principal components.
-    Network(Box<NetworkOnComponents>),
+    Network(Box<PcaMlp>),
 }
 
 impl From<Model> for Regression {
@@ -26,8 +26,8 @@ impl From<Projected> for Regression {
     }
 }
 
-impl From<NetworkOnComponents> for Regression {
-    fn from(network: NetworkOnComponents) -> Self {
+impl From<PcaMlp> for Regression {
+    fn from(network: PcaMlp) -> Self {
         Self::Network(Box::new(network))
     }
 }

@@ -68,7 +68,7 @@ pub struct NetworkTraining {
     /// Principal components of each view's code, and of what is beside it, at most.
     pub components: usize,
     /// The network.
-    pub perceptron: Perceptron,
+    pub perceptron: MlpTrainer,
 }
 
 /// What training keeps of its scenes for a regressor.
@@ -213,7 +213,7 @@ impl Regressor {
         };
         progress.begin("train the network", fitter.perceptron.epochs);
         let trained = fitter.perceptron.fit_single(x, y, &mut |_| progress.step())?;
-        Ok(NetworkOnComponents::from_parts(components.clone(), trained.model)?.into())
+        Ok(PcaMlp::from_parts(components.clone(), trained.model)?.into())
     }
 
     /// Fits targets `y`, m × I, to descriptors `x`, K × I; samples are columns. Of regressors with

@@ -7,7 +7,7 @@ use phalanx::{
     Silent, Training,
 };
 use phalanx_hand::{HandShape, Pose};
-use phalanx_rvm::Perceptron;
+use phalanx_rvm::MlpTrainer;
 
 use crate::desk::{poses, top};
 use crate::roads;
@@ -16,7 +16,7 @@ use crate::roads;
 fn training() -> Training {
     let preset = Preset::default().training();
     let Regressor::Network(network) = preset.regressor else { unreachable!("it is a network") };
-    let perceptron = Perceptron {
+    let perceptron = MlpTrainer {
         hidden: vec![32; 3],
         epochs: 400,
         batch: 16,

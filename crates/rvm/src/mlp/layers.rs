@@ -14,7 +14,7 @@ pub(super) struct Layers {
 }
 
 /// What is left out of each layer: so large a share, by chance.
-pub(super) struct LeftOut {
+pub(super) struct DropoutMask {
     pub(super) share: f64,
     pub(super) random: Pcg64Mcg,
 }
@@ -78,7 +78,7 @@ impl Pass {
     pub(super) const SAMPLES: usize = 128;
 
     /// Takes samples, one after the other, through all layers.
-    pub(super) fn forward(&mut self, layers: &Layers, x: Vec<f32>, mut left_out: Option<LeftOut>) {
+    pub(super) fn forward(&mut self, layers: &Layers, x: Vec<f32>, mut left_out: Option<DropoutMask>) {
         self.samples = x.len() / layers.widths[0];
         self.values.resize_with(layers.count() + 1, Vec::new);
         self.steepness.resize_with(layers.count() - 1, Vec::new);
@@ -142,7 +142,7 @@ impl Pass {
     }
 }
 
-impl LeftOut {
+impl DropoutMask {
     /// Makes some values 0 and what is kept larger for it, and their derivatives with them.
     fn leave_out(&mut self, values: &mut [f32], steepness: &mut [f32]) {
         let mut bytes = vec![0; values.len()];
@@ -253,7 +253,7 @@ mod tests {
         bend(&mut values, &mut steepness);
         let (plain, plain_steepness) = (values.clone(), steepness.clone());
         let random = Pcg64Mcg::seed_from_u64(1);
-        LeftOut { share: 0.25, random }.leave_out(&mut values, &mut steepness);
+        DropoutMask { share: 0.25, random }.leave_out(&mut values, &mut steepness);
         let mut left_out = 0;
         for k in 0..values.len() {
             let factor = if steepness[k] == 0.0 { 0.0 } else { 4.0 / 3.0 };

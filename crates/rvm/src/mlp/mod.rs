@@ -16,8 +16,8 @@ use crate::data::permutation::shuffle;
 use crate::data::scaler::Standardiser;
 use crate::error::{Error, Result};
 use crate::mlp::adam::Adam;
-use crate::mlp::layers::{Layers, LeftOut, Pass};
-use crate::mlp::network::{Network, NetworkParts};
+use crate::mlp::layers::{Layers, DropoutMask, Pass};
+use crate::mlp::network::{Mlp, MlpParts};
 use crate::mlp::samples::{Samples, Scaling, check_inputs};
 use crate::model::report::{Fit, Report, Trace};
 use crate::transform::affine_map::Projection;
@@ -37,12 +37,12 @@ use crate::transform::affine_map::Projection;
 /// For targets that depend on many inputs at once, and samples that go into the tens of thousands.
 ///
 /// ```
-/// use phalanx_rvm::{Perceptron, Regressor, faer::Mat};
+/// use phalanx_rvm::{MlpTrainer, Regressor, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(2, 2000, |i, t| ((t * (7 + 6 * i)) as f64 * 0.0618).fract() - 0.5);
 /// let y = Mat::from_fn(1, 2000, |_, t| x[(0, t)] * x[(1, t)]);
-/// let fitter = Perceptron { hidden: vec![32, 32], dropout: 0.0, ..Perceptron::default() };
+/// let fitter = MlpTrainer { hidden: vec![32, 32], dropout: 0.0, ..MlpTrainer::default() };
 /// let network = fitter.fit(x.as_ref(), y.as_ref())?.model;
 ///
 /// let (mut mean, mut std) = ([0.0], [0.0]);
@@ -53,7 +53,7 @@ use crate::transform::affine_map::Projection;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Perceptron {
+pub struct MlpTrainer {
     /// How wide each layer is but the last; none for linear regression.
     pub hidden: Vec<usize>,
     /// How often each sample is looked at.
@@ -69,16 +69,16 @@ pub struct Perceptron {
     pub seed: u64,
 }
 
-impl Default for Perceptron {
+impl Default for MlpTrainer {
     fn default() -> Self {
         let hidden = vec![512; 3];
         Self { hidden, epochs: 40, batch: 256, rate: 2e-3, dropout: 0.2, seed: 1 }
     }
 }
 
-impl Perceptron {
+impl MlpTrainer {
     /// Fits X (K×I) to Y (m×I).
-    pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit<Network>> {
+    pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit<Mlp>> {
         check::matrix("x", x)?;
         let single = Mat::from_fn(x.nrows(), x.ncols(), |i, t| x[(i, t)] as f32);
         self.fit_single(single.as_ref(), y, &mut |_| ())
@@ -92,7 +92,7 @@ impl Perceptron {
         x: MatRef<'_, f32>,
         y: MatRef<'_, f64>,
         observe: &mut dyn FnMut(usize),
-    ) -> Result<Fit<Network>> {
+    ) -> Result<Fit<Mlp>> {
         self.check()?;
         check_inputs(x)?;
         let targets = Standardiser::fit(y)?;
@@ -108,7 +108,7 @@ impl Perceptron {
                 observe(epoch);
             });
         }
-        let network = Network::from_parts(NetworkParts {
+        let network = Mlp::from_parts(MlpParts {
             layers: folded(&layers, &scaling, &targets)?,
             mean: targets.mean().to_vec(),
             scale: targets.scale().to_vec(),
@@ -166,7 +166,7 @@ impl Perceptron {
                 let parts = passes.par_iter_mut().zip(batch.par_chunks(Pass::SAMPLES));
                 parts.zip(seeds).for_each(|((pass, part), seed)| {
                     let random = Pcg64Mcg::seed_from_u64(seed);
-                    let left_out = LeftOut { share: self.dropout, random };
+                    let left_out = DropoutMask { share: self.dropout, random };
                     let left_out = (self.dropout > 0.0).then_some(left_out);
                     pass.forward(layers, samples.inputs(part), left_out);
                     let count = (batch.len() * samples.y.nrows()) as f32;

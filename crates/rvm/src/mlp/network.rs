@@ -8,19 +8,19 @@ use crate::model::regressor::Regressor;
 use crate::model::scratch::Scratch;
 use crate::transform::affine_map::Projection;
 
-/// A fitted [`Perceptron`](crate::Perceptron): affine maps with z/(1 + e⁻ᶻ) between them, and a
+/// A fitted [`MlpTrainer`](crate::MlpTrainer): affine maps with z/(1 + e⁻ᶻ) between them, and a
 /// standard deviation for each target, the same everywhere.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "NetworkParts", into = "NetworkParts"))]
-pub struct Network {
-    parts: NetworkParts,
+#[cfg_attr(feature = "serde", serde(try_from = "MlpParts", into = "MlpParts"))]
+pub struct Mlp {
+    parts: MlpParts,
 }
 
-/// What a [`Network`] is made of.
+/// What a [`Mlp`] is made of.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct NetworkParts {
+pub struct MlpParts {
     /// At least one, the first first; the last one's outputs are standardised targets.
     pub layers: Vec<Projection>,
     /// The mean of each target.
@@ -31,9 +31,9 @@ pub struct NetworkParts {
     pub std: Vec<f64>,
 }
 
-impl Network {
+impl Mlp {
     /// Puts one together from its parts.
-    pub fn from_parts(parts: NetworkParts) -> Result<Self> {
+    pub fn from_parts(parts: MlpParts) -> Result<Self> {
         for pair in parts.layers.windows(2) {
             check::length("inputs of a layer", pair[0].outputs(), pair[1].inputs())?;
         }
@@ -51,12 +51,12 @@ impl Network {
     }
 
     /// A look at the parts.
-    pub fn parts(&self) -> &NetworkParts {
+    pub fn parts(&self) -> &MlpParts {
         &self.parts
     }
 }
 
-impl Regressor for Network {
+impl Regressor for Mlp {
     fn inputs(&self) -> usize {
         self.parts.layers[0].inputs()
     }
@@ -74,7 +74,7 @@ impl Regressor for Network {
     ) -> Result<()> {
         check::answers(self.outputs(), mean, std)?;
         let Scratch { single, hidden, projected, .. } = scratch;
-        let NetworkParts { layers, .. } = &self.parts;
+        let MlpParts { layers, .. } = &self.parts;
         layers[0].apply_into(x, single, hidden)?;
         for layer in &layers[1..] {
             for z in hidden.iter_mut() {
@@ -92,16 +92,16 @@ impl Regressor for Network {
     }
 }
 
-impl TryFrom<NetworkParts> for Network {
+impl TryFrom<MlpParts> for Mlp {
     type Error = Error;
 
-    fn try_from(parts: NetworkParts) -> Result<Self> {
+    fn try_from(parts: MlpParts) -> Result<Self> {
         Self::from_parts(parts)
     }
 }
 
-impl From<Network> for NetworkParts {
-    fn from(network: Network) -> Self {
+impl From<Mlp> for MlpParts {
+    fn from(network: Mlp) -> Self {
         network.parts
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::data::check;
 use crate::error::{Error, Result};
-use crate::mlp::network::Network;
+use crate::mlp::network::Mlp;
 use crate::model::regressor::Regressor;
 use crate::model::scratch::Scratch;
 use crate::transform::block_pca::Components;
@@ -11,7 +11,7 @@ use crate::transform::block_pca::Components;
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Parts", into = "Parts"))]
-pub struct NetworkOnComponents {
+pub struct PcaMlp {
     parts: Parts,
 }
 
@@ -20,12 +20,12 @@ pub struct NetworkOnComponents {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Parts {
     components: Components,
-    network: Network,
+    network: Mlp,
 }
 
-impl NetworkOnComponents {
+impl PcaMlp {
     /// Puts components and a network that reads as many together.
-    pub fn from_parts(components: Components, network: Network) -> Result<Self> {
+    pub fn from_parts(components: Components, network: Mlp) -> Result<Self> {
         check::length("inputs of the network", components.outputs(), network.inputs())?;
         Ok(Self { parts: Parts { components, network } })
     }
@@ -36,12 +36,12 @@ impl NetworkOnComponents {
     }
 
     /// The network.
-    pub fn network(&self) -> &Network {
+    pub fn network(&self) -> &Mlp {
         &self.parts.network
     }
 }
 
-impl Regressor for NetworkOnComponents {
+impl Regressor for PcaMlp {
     fn inputs(&self) -> usize {
         self.components().inputs()
     }
@@ -65,7 +65,7 @@ impl Regressor for NetworkOnComponents {
     }
 }
 
-impl TryFrom<Parts> for NetworkOnComponents {
+impl TryFrom<Parts> for PcaMlp {
     type Error = Error;
 
     fn try_from(parts: Parts) -> Result<Self> {
@@ -73,8 +73,8 @@ impl TryFrom<Parts> for NetworkOnComponents {
     }
 }
 
-impl From<NetworkOnComponents> for Parts {
-    fn from(own: NetworkOnComponents) -> Self {
+impl From<PcaMlp> for Parts {
+    fn from(own: PcaMlp) -> Self {
         own.parts
     }
 }

@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    ConditionalDensity, PredictiveDeviation, AugmentedRvm, Model, NystromRidge, Perceptron, Regressor, Scratch, RelevanceVectorMachine,
+    ConditionalDensity, PredictiveDeviation, AugmentedRvm, Model, NystromRidge, MlpTrainer, Regressor, Scratch, RelevanceVectorMachine,
 };
 use proptest::prelude::*;
 
@@ -76,7 +76,7 @@ fn an_augmented_machine_knows_none_either() {
 fn a_network_of_few_samples_knows_no_more_than_the_targets_tell() {
     let (x, mut y) = smooth(3, 2, 2, 100);
     y.row_mut(1).fill(0.25);
-    let fitter = Perceptron { hidden: vec![8], epochs: 5, batch: 16, ..Perceptron::default() };
+    let fitter = MlpTrainer { hidden: vec![8], epochs: 5, batch: 16, ..MlpTrainer::default() };
     let network = fitter.fit(x.as_ref(), y.as_ref()).unwrap().model;
     let (mut mean, mut std) = ([0.0; 2], [0.0; 2]);
     network.predict_into(&[0.1, 0.2], &mut Scratch::default(), &mut mean, &mut std).unwrap();

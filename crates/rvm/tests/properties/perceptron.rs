@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, Components, Error, Fit, Network, NetworkOnComponents, NetworkParts, Perceptron,
+    Block, Components, Error, Fit, Mlp, PcaMlp, MlpParts, MlpTrainer,
     Projection, ProjectionParts, Regressor, Scratch, random_subset,
 };
 use proptest::prelude::*;
@@ -10,15 +10,15 @@ use proptest::prelude::*;
 use crate::problems::Source;
 use crate::property;
 
-fn small() -> Perceptron {
-    Perceptron { hidden: vec![16, 16], epochs: 30, batch: 32, rate: 5e-3, dropout: 0.0, seed: 3 }
+fn small() -> MlpTrainer {
+    MlpTrainer { hidden: vec![16, 16], epochs: 30, batch: 32, rate: 5e-3, dropout: 0.0, seed: 3 }
 }
 
-fn fit(fitter: &Perceptron, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Fit<Network> {
+fn fit(fitter: &MlpTrainer, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Fit<Mlp> {
     fitter.fit(x, y).expect("a network")
 }
 
-fn predict(network: &Network, x: MatRef<'_, f64>) -> (Mat<f64>, Vec<f64>) {
+fn predict(network: &Mlp, x: MatRef<'_, f64>) -> (Mat<f64>, Vec<f64>) {
     let (mut mean, mut std) = (vec![0.0; network.outputs()], vec![0.0; network.outputs()]);
     let (mut scratch, mut all) = (Scratch::default(), Mat::zeros(network.outputs(), x.ncols()));
     for t in 0..x.ncols() {
@@ -99,7 +99,7 @@ proptest! {
 #[test]
 fn a_bent_surface_is_learnt() {
     let (x, y) = bent(1, 3000);
-    let fitter = Perceptron { hidden: vec![32, 32], epochs: 60, ..small() };
+    let fitter = MlpTrainer { hidden: vec![32, 32], epochs: 60, ..small() };
     let fitted = fit(&fitter, x.as_ref(), y.as_ref());
     let (new_x, new_y) = bent(2, 300);
     let (mean, _) = predict(&fitted.model, new_x.as_ref());
@@ -115,13 +115,13 @@ fn any_number_of_threads_and_dropout_give_the_same_bits() {
     // Parts of a batch, of the weights and of the judges, none of them whole.
     let (x, y) = bent(5, 5000);
     let fitter =
-        Perceptron { hidden: vec![150, 150], batch: 300, dropout: 0.3, epochs: 2, ..small() };
+        MlpTrainer { hidden: vec![150, 150], batch: 300, dropout: 0.3, epochs: 2, ..small() };
     let of_threads = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| fit(&fitter, x.as_ref(), y.as_ref()))
     };
     assert!(of_threads(1) == of_threads(3));
-    let other = fit(&Perceptron { seed: 4, ..fitter.clone() }, x.as_ref(), y.as_ref());
+    let other = fit(&MlpTrainer { seed: 4, ..fitter.clone() }, x.as_ref(), y.as_ref());
     assert!(other != of_threads(1));
 }
 
@@ -142,13 +142,13 @@ fn what_does_not_vary_stays_and_has_no_deviation() {
 #[test]
 fn what_cannot_be_learnt_from_is_named() {
     let (x, y) = bent(9, 40);
-    let refused = |fitter: Perceptron| fitter.fit(x.as_ref(), y.as_ref()).unwrap_err().to_string();
+    let refused = |fitter: MlpTrainer| fitter.fit(x.as_ref(), y.as_ref()).unwrap_err().to_string();
     for (fitter, name) in [
-        (Perceptron { epochs: 0, ..small() }, "epochs"),
-        (Perceptron { batch: 0, ..small() }, "batch"),
-        (Perceptron { hidden: vec![4, 0], ..small() }, "hidden"),
-        (Perceptron { rate: f64::NAN, ..small() }, "rate"),
-        (Perceptron { dropout: 1.0, ..small() }, "dropout"),
+        (MlpTrainer { epochs: 0, ..small() }, "epochs"),
+        (MlpTrainer { batch: 0, ..small() }, "batch"),
+        (MlpTrainer { hidden: vec![4, 0], ..small() }, "hidden"),
+        (MlpTrainer { rate: f64::NAN, ..small() }, "rate"),
+        (MlpTrainer { dropout: 1.0, ..small() }, "dropout"),
     ] {
         assert!(refused(fitter).starts_with(name), "{name}");
     }
@@ -168,9 +168,9 @@ fn layer(inputs: usize, outputs: usize) -> Projection {
 }
 
 /// Of layers and deviations, in standardised units.
-fn network(layers: Vec<Projection>, std: Vec<f64>) -> Result<Network, Error> {
+fn network(layers: Vec<Projection>, std: Vec<f64>) -> Result<Mlp, Error> {
     let (mean, scale) = (vec![0.0; std.len()], vec![1.0; std.len()]);
-    Network::from_parts(NetworkParts { layers, mean, scale, std })
+    Mlp::from_parts(MlpParts { layers, mean, scale, std })
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn parts_that_do_not_fit_are_refused() {
         assert!(network(layers, std).is_err());
     }
     let network = network(vec![layer(3, 1)], vec![0.1]).unwrap();
-    let spoils: [fn(&mut NetworkParts); 3] = [
+    let spoils: [fn(&mut MlpParts); 3] = [
         |parts| parts.mean.push(0.0),
         |parts| parts.scale = vec![-1.0],
         |parts| parts.mean = vec![f64::NAN],
@@ -194,11 +194,11 @@ fn parts_that_do_not_fit_are_refused() {
     for (k, spoil) in spoils.into_iter().enumerate() {
         let mut parts = network.parts().clone();
         spoil(&mut parts);
-        assert!(Network::from_parts(parts).is_err(), "spoil {k}");
+        assert!(Mlp::from_parts(parts).is_err(), "spoil {k}");
     }
     let components = |outputs| Components::from_parts(vec![layer(2, 1), layer(1, outputs)]);
-    assert!(NetworkOnComponents::from_parts(components(1), network.clone()).is_err());
-    let own = NetworkOnComponents::from_parts(components(2), network).unwrap();
+    assert!(PcaMlp::from_parts(components(1), network.clone()).is_err());
+    let own = PcaMlp::from_parts(components(2), network).unwrap();
     assert_eq!((own.inputs(), own.outputs()), (3, 1));
     // So many inputs that their number overflows, of which none is read.
     let nothing = ProjectionParts { inputs: usize::MAX, matrix: vec![], offset: vec![] };
@@ -215,14 +215,14 @@ fn parts_that_do_not_fit_are_refused() {
 #[test]
 fn stored_networks_come_back_and_spoilt_ones_do_not() {
     let network = network(vec![layer(3, 2), layer(2, 1)], vec![0.1]).unwrap();
-    let own = NetworkOnComponents::from_parts(Components::from_parts(vec![layer(4, 3)]), network);
+    let own = PcaMlp::from_parts(Components::from_parts(vec![layer(4, 3)]), network);
     let own = own.unwrap();
     let bytes = postcard::to_allocvec(&own).unwrap();
-    assert_eq!(postcard::from_bytes::<NetworkOnComponents>(&bytes).unwrap(), own);
+    assert_eq!(postcard::from_bytes::<PcaMlp>(&bytes).unwrap(), own);
     // A first block of five inputs, of which there are four times three numbers.
     let mut spoilt = bytes.clone();
     assert_eq!(spoilt[1], 4);
     spoilt[1] = 5;
-    assert!(postcard::from_bytes::<NetworkOnComponents>(&spoilt).is_err());
-    assert!(postcard::from_bytes::<NetworkOnComponents>(&bytes[..bytes.len() - 1]).is_err());
+    assert!(postcard::from_bytes::<PcaMlp>(&spoilt).is_err());
+    assert!(postcard::from_bytes::<PcaMlp>(&bytes[..bytes.len() - 1]).is_err());
 }

@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
     Block, AgarwalTriggs, TwoStageSelection, BasisSpec, Error, OrthogonalLeastSquares, GradientMetric, Kernel, KernelRidge,
-    ArdRvm, Model, MultiOutputRvm, NystromRidge, Perceptron, PilotSample, Projected, Regressor, Result,
+    ArdRvm, Model, MultiOutputRvm, NystromRidge, MlpTrainer, PilotSample, Projected, Regressor, Result,
     Ridge, Stop, SufficientStatistics, RelevanceVectorMachine, Bandwidth, random_subset,
 };
 
@@ -200,12 +200,12 @@ fn learnt_metric() {
 
 #[test]
 fn perceptron() {
-    let fitter = Perceptron {
+    let fitter = MlpTrainer {
         hidden: vec![24],
         epochs: 6,
         batch: 64,
         dropout: 0.0,
-        ..Perceptron::default()
+        ..MlpTrainer::default()
     };
     alike(&ROWS, |x, y| {
         let network = fitter.fit(x.as_ref(), y.as_ref()).unwrap().model;
