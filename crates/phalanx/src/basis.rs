@@ -35,9 +35,9 @@ pub(crate) enum Reading {
     /// Its descriptor.
     Whole,
     /// The descriptor's principal components.
-    Components(Components),
+    Components(BlockPca),
     /// What learnt distances make of it.
-    Metric(Metric),
+    Metric(LearnedMetric),
 }
 
 impl Training {

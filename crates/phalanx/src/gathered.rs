@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use faer::{Mat, MatRef};
 use phalanx_hand::Dof;
-use phalanx_rvm::{BasisSpec, Projected, SufficientStatistics};
+use phalanx_rvm::{BasisSpec, GroupedRegressor, SufficientStatistics};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -205,7 +205,7 @@ fn fit_sums(sums: &[SufficientStatistics], basis: &Basis) -> Result<Regression> 
         |(columns, sums): &(BasisSpec, &SufficientStatistics)| Ok(basis.regressor.fit_sums(columns, sums)?.model);
     let mut models = work.par_iter().map(fit).collect::<Result<Vec<_>>>()?;
     Ok(match &basis.reading {
-        Reading::Metric(metric) => Projected::from_parts(metric.clone(), models)?.into(),
+        Reading::Metric(metric) => GroupedRegressor::from_parts(metric.clone(), models)?.into(),
         _ => models.remove(0).into(),
     })
 }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
 use phalanx_rvm::{
-    ConditionalDensity, ConditionalDensityParts, Model, ModelParts, PcaMlp, Projected,
+    ConditionalDensity, ConditionalDensityParts, Model, ModelParts, PcaMlp, GroupedRegressor,
 };
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +28,7 @@ struct Payload<'a> {
 #[derive(Serialize, Deserialize)]
 enum Stored<'a> {
     Joint(Cow<'a, ModelParts>),
-    Projected(Cow<'a, Projected>),
+    Projected(Cow<'a, GroupedRegressor>),
     Network(Cow<'a, PcaMlp>),
 }
 

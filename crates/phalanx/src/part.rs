@@ -207,7 +207,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     use phalanx_hand::{Dof, Pose};
-    use phalanx_rvm::{Components, Ridge};
+    use phalanx_rvm::{BlockPca, Ridge};
 
     use super::*;
     use crate::basis::Reading;
@@ -243,7 +243,7 @@ mod tests {
             |part| part.basis.pilot.swap(0, 1),
             |part| part.basis.pilot_x.truncate(3),
             |part| part.scenes = usize::MAX,
-            |part| part.basis.reading = Reading::Components(Components::from_parts(Vec::new())),
+            |part| part.basis.reading = Reading::Components(BlockPca::from_parts(Vec::new())),
             |part| part.gathered = Gathered::Sums(Vec::new()),
             |part| part.gathered = Gathered::Samples(BTreeMap::new()),
         ];

@@ -2,7 +2,7 @@
 
 use phalanx_codebook::KMeans;
 use phalanx_multiview::Vocabulary;
-use phalanx_rvm::{PredictiveDeviation, GradientMetric, NystromRidge, NystromRegularisation, MlpTrainer, Bandwidth};
+use phalanx_rvm::{PredictiveDeviation, ExpectedGradientOuterProduct, NystromRidge, NystromRegularisation, MlpTrainer, Bandwidth};
 
 use crate::{
     Description, Framing, LearntMetric, NetworkTraining, OrientationRule, Regressor, Training,
@@ -45,7 +45,7 @@ impl Preset {
             Self::Fast => Regressor::LearntMetric(LearntMetric {
                 pilot: 2000,
                 components: 120,
-                metric: GradientMetric {
+                metric: ExpectedGradientOuterProduct {
                     regression: regression(1.0, &[0.01, 0.03, 0.1, 0.3]),
                     rounds: 1,
                     centres: 800,

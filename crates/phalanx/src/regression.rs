@@ -1,6 +1,6 @@
 //! The fitted regressor of an estimator.
 use phalanx_rvm::Regressor as _;
-use phalanx_rvm::{Model, PcaMlp, Projected, Scratch};
+use phalanx_rvm::{Model, PcaMlp, GroupedRegressor, Scratch};
 
 /// A fitted regressor from descriptors to poses.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,7 +9,7 @@ pub enum Regression {
     /// One model of all numbers of the pose.
     Joint(Box<Model>),
     /// A model for each digit, with a distance of its own.
-    Projected(Projected),
+    Projected(GroupedRegressor),
     /// A network of all numbers of the pose, on the descriptor's principal components.
     Network(Box<PcaMlp>),
 }
@@ -20,8 +20,8 @@ impl From<Model> for Regression {
     }
 }
 
-impl From<Projected> for Regression {
-    fn from(projected: Projected) -> Self {
+impl From<GroupedRegressor> for Regression {
+    fn from(projected: GroupedRegressor) -> Self {
         Self::Projected(projected)
     }
 }

@@ -90,14 +90,14 @@ impl LearntMetric {
         x: MatRef<'_, f64>,
         y: MatRef<'_, f64>,
         parts: &[usize],
-    ) -> Result<Metric> {
+    ) -> Result<LearnedMetric> {
         Ok(self.metric.fit(x, y, &blocks(parts, self.components), &groups())?)
     }
 }
 
 /// Parts of these lengths, with at most so many components each.
-fn blocks(parts: &[usize], components: usize) -> Vec<Block> {
-    parts.iter().map(|&inputs| Block { inputs, components }).collect()
+fn blocks(parts: &[usize], components: usize) -> Vec<FeatureBlock> {
+    parts.iter().map(|&inputs| FeatureBlock { inputs, components }).collect()
 }
 
 /// The numbers of the pose that are regressed together: each digit's, and all others.
@@ -192,7 +192,7 @@ impl Regressor {
             }
             Self::Network(fitter) => {
                 progress.begin("find principal components", 1);
-                let components = Components::fit(x.as_ref(), &blocks(&parts, fitter.components))?;
+                let components = BlockPca::fit(x.as_ref(), &blocks(&parts, fitter.components))?;
                 progress.step();
                 Reading::Components(components)
             }

@@ -3,8 +3,8 @@
 use anyhow::Result;
 use phalanx_rvm::faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, AgarwalTriggs, BasisSpec, OrthogonalLeastSquares, GradientMetric, Kernel, Model, MultiOutputRvm,
-    NystromRidge, PilotSample, Projection, Stop, SufficientStatistics, Bandwidth,
+    FeatureBlock, AgarwalTriggs, BasisSpec, OrthogonalLeastSquares, ExpectedGradientOuterProduct, Kernel, Model, MultiOutputRvm,
+    NystromRidge, PilotSample, AffineMap, Stop, SufficientStatistics, Bandwidth,
 };
 
 use super::clock::{middle, timed};
@@ -23,7 +23,7 @@ const COUNT: usize = 40;
 
 /// A fit, and what it reads in place of the inputs where a distance was learnt first.
 struct Made {
-    projection: Option<Projection>,
+    projection: Option<AffineMap>,
     model: Model,
 }
 
@@ -143,8 +143,8 @@ fn by_distance(
 ) -> phalanx_rvm::Result<Made> {
     let (x, y) = (problem.x.as_ref(), problem.y.as_ref());
     let regression = NystromRidge { width: Bandwidth::Scatter(1.7), ..NystromRidge::default() };
-    let learning = GradientMetric { regression, rounds: 1, centres: 400, gradients: 400, rank: 40 };
-    let block = Block { inputs: x.nrows(), components: 60 };
+    let learning = ExpectedGradientOuterProduct { regression, rounds: 1, centres: 400, gradients: 400, rank: 40 };
+    let block = FeatureBlock { inputs: x.nrows(), components: 60 };
     let all = vec![(0..y.nrows()).collect()];
     let projection = learning.fit(x, y, &[block], &all)?.projection;
     let inputs: Mat<f64> = projection.apply(x)?;

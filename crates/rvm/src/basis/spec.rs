@@ -56,7 +56,7 @@ impl BasisSpec {
     }
 
     /// A Gaussian on each sample of the pilot, over inputs whose proportions mean something, such as
-    /// those of a learnt [`Metric`](crate::Metric): all are divided by one number.
+    /// those of a learnt [`LearnedMetric`](crate::LearnedMetric): all are divided by one number.
     pub fn in_proportion(pilot: &PilotSample<'_>, width: Bandwidth) -> Result<Self> {
         let problem = Problem::in_proportion(pilot.x, pilot.y)?;
         Self::on_pilot(&problem, problem.features(), Kernel::Gaussian(width), pilot)

@@ -20,7 +20,7 @@ use crate::mlp::layers::{Layers, DropoutMask, Pass};
 use crate::mlp::network::{Mlp, MlpParts};
 use crate::mlp::samples::{Samples, Scaling, check_inputs};
 use crate::model::report::{Fit, Report, Trace};
-use crate::transform::affine_map::Projection;
+use crate::transform::affine_map::AffineMap;
 
 /// A multilayer perceptron: layers of x ↦ s(Wx + b), s(z) = z/(1 + e⁻ᶻ) (Elfwing, Uchibe and Doya
 /// 2018), and a linear one after them.
@@ -28,7 +28,7 @@ use crate::transform::affine_map::Projection;
 /// Fitted to the mean absolute error of the standardised targets by Adam (Kingma and Ba 2015) in
 /// shuffled batches, at a rate that rises over the first third of the steps and falls to nothing
 /// over the others (Smith and Topin 2019), with dropout (Srivastava et al. 2014). Inputs keep their
-/// proportions: put them on one scale first, as [`Components`](crate::Components) does.
+/// proportions: put them on one scale first, as [`BlockPca`](crate::BlockPca) does.
 ///
 /// One sample in 16, drawn at random, is not learnt from; the standard deviations are the root mean square errors of
 /// these, one for each target (with fewer than 128 samples, the targets' own deviations), and the
@@ -204,7 +204,7 @@ fn one_cycle(step: usize, steps: usize) -> f64 {
 
 /// The layers with the scaling of inputs in the first, and nothing in the last for targets that do not
 /// vary.
-fn folded(layers: &Layers, scaling: &Scaling, targets: &Standardiser) -> Result<Vec<Projection>> {
+fn folded(layers: &Layers, scaling: &Scaling, targets: &Standardiser) -> Result<Vec<AffineMap>> {
     let last = layers.count() - 1;
     let varying = targets.varying();
     let mut projections = Vec::with_capacity(layers.count());
@@ -236,7 +236,7 @@ fn folded(layers: &Layers, scaling: &Scaling, targets: &Standardiser) -> Result<
             }
             (matrix, offset) = (whole, all);
         }
-        projections.push(Projection::affine(matrix.as_ref(), &offset)?);
+        projections.push(AffineMap::affine(matrix.as_ref(), &offset)?);
     }
     Ok(projections)
 }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::model::parts::known;
 use crate::model::regressor::Regressor;
 use crate::model::scratch::Scratch;
-use crate::transform::affine_map::Projection;
+use crate::transform::affine_map::AffineMap;
 
 /// A fitted [`MlpTrainer`](crate::MlpTrainer): affine maps with z/(1 + e⁻ᶻ) between them, and a
 /// standard deviation for each target, the same everywhere.
@@ -22,7 +22,7 @@ pub struct Mlp {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MlpParts {
     /// At least one, the first first; the last one's outputs are standardised targets.
-    pub layers: Vec<Projection>,
+    pub layers: Vec<AffineMap>,
     /// The mean of each target.
     pub mean: Vec<f64>,
     /// How much of a target one standardised unit is; 0 of one that does not vary.

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::mlp::network::Mlp;
 use crate::model::regressor::Regressor;
 use crate::model::scratch::Scratch;
-use crate::transform::block_pca::Components;
+use crate::transform::block_pca::BlockPca;
 
 /// A network and the principal components of the inputs, which it reads.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,19 +19,19 @@ pub struct PcaMlp {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Parts {
-    components: Components,
+    components: BlockPca,
     network: Mlp,
 }
 
 impl PcaMlp {
     /// Puts components and a network that reads as many together.
-    pub fn from_parts(components: Components, network: Mlp) -> Result<Self> {
+    pub fn from_parts(components: BlockPca, network: Mlp) -> Result<Self> {
         check::length("inputs of the network", components.outputs(), network.inputs())?;
         Ok(Self { parts: Parts { components, network } })
     }
 
     /// The components.
-    pub fn components(&self) -> &Components {
+    pub fn components(&self) -> &BlockPca {
         &self.parts.components
     }
 

@@ -12,26 +12,26 @@ use crate::error::{Error, Result};
 /// reads all of it, and descriptors are not known to seven digits.
 ///
 /// ```
-/// use phalanx_rvm::{Projection, ProjectionParts, faer::mat};
+/// use phalanx_rvm::{AffineMap, AffineMapParts, faer::mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
-/// let parts = ProjectionParts { inputs: 2, matrix: vec![1.0, -1.0], offset: vec![0.5] };
-/// let difference = Projection::from_parts(parts)?;
+/// let parts = AffineMapParts { inputs: 2, matrix: vec![1.0, -1.0], offset: vec![0.5] };
+/// let difference = AffineMap::from_parts(parts)?;
 /// assert_eq!(difference.apply(mat![[3.0], [1.0]].as_ref())?, mat![[2.5]]);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "ProjectionParts", into = "ProjectionParts"))]
-pub struct Projection {
-    parts: ProjectionParts,
+#[cfg_attr(feature = "serde", serde(try_from = "AffineMapParts", into = "AffineMapParts"))]
+pub struct AffineMap {
+    parts: AffineMapParts,
 }
 
-/// What a [`Projection`] is made of.
+/// What a [`AffineMap`] is made of.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct ProjectionParts {
+pub struct AffineMapParts {
     /// Length K of an input.
     pub inputs: usize,
     /// P, d×K, column by column.
@@ -40,9 +40,9 @@ pub struct ProjectionParts {
     pub offset: Vec<f32>,
 }
 
-impl Projection {
+impl AffineMap {
     /// Puts one together from its parts.
-    pub fn from_parts(parts: ProjectionParts) -> Result<Self> {
+    pub fn from_parts(parts: AffineMapParts) -> Result<Self> {
         let expected = parts.inputs.checked_mul(parts.offset.len());
         check::part("matrix", "has the wrong length", Some(parts.matrix.len()) != expected)?;
         let unusable = |values: &[f32]| !values.iter().all(|value| value.is_finite());
@@ -63,7 +63,7 @@ impl Projection {
 
     /// The map of this matrix, d×K, and offset.
     pub(crate) fn affine(matrix: MatRef<'_, f64>, offset: &[f64]) -> Result<Self> {
-        Self::from_parts(ProjectionParts {
+        Self::from_parts(AffineMapParts {
             inputs: matrix.ncols(),
             matrix: matrix
                 .col_iter()
@@ -74,7 +74,7 @@ impl Projection {
     }
 
     /// A look at the parts.
-    pub fn parts(&self) -> &ProjectionParts {
+    pub fn parts(&self) -> &AffineMapParts {
         &self.parts
     }
 
@@ -132,16 +132,16 @@ impl Projection {
     }
 }
 
-impl TryFrom<ProjectionParts> for Projection {
+impl TryFrom<AffineMapParts> for AffineMap {
     type Error = Error;
 
-    fn try_from(parts: ProjectionParts) -> Result<Self> {
+    fn try_from(parts: AffineMapParts) -> Result<Self> {
         Self::from_parts(parts)
     }
 }
 
-impl From<Projection> for ProjectionParts {
-    fn from(projection: Projection) -> Self {
+impl From<AffineMap> for AffineMapParts {
+    fn from(projection: AffineMap) -> Self {
         projection.parts
     }
 }

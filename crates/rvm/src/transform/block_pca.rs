@@ -5,19 +5,19 @@ use rayon::prelude::*;
 
 use crate::data::check;
 use crate::error::Result;
-use crate::transform::affine_map::Projection;
-use crate::transform::pca::{Block, Principal, of_blocks};
+use crate::transform::affine_map::AffineMap;
+use crate::transform::pca::{FeatureBlock, Pca, of_blocks};
 
 /// The principal components of blocks of inputs, one block's after the other's; each block is
 /// brought to a total variance of 1, whatever its inputs' number and units.
 ///
 /// ```
-/// use phalanx_rvm::{Block, Components, faer::Mat};
+/// use phalanx_rvm::{FeatureBlock, BlockPca, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(5, 100, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
-/// let blocks = [Block { inputs: 2, components: 1 }, Block { inputs: 3, components: 3 }];
-/// let components = Components::fit(x.as_ref(), &blocks)?;
+/// let blocks = [FeatureBlock { inputs: 2, components: 1 }, FeatureBlock { inputs: 3, components: 3 }];
+/// let components = BlockPca::fit(x.as_ref(), &blocks)?;
 /// let z = components.apply(x.as_ref())?;
 /// assert_eq!(z.shape(), (4, 100));
 /// assert!((z.row(0).squared_norm_l2() / 100.0 - 1.0).abs() < 1e-3);
@@ -27,37 +27,37 @@ use crate::transform::pca::{Block, Principal, of_blocks};
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(transparent))]
-pub struct Components {
-    blocks: Vec<Projection>,
+pub struct BlockPca {
+    blocks: Vec<AffineMap>,
 }
 
-impl Components {
+impl BlockPca {
     /// Fits X (K×I), whose rows are made up of `blocks`.
-    pub fn fit(x: MatRef<'_, f64>, blocks: &[Block]) -> Result<Self> {
-        let map = |part: &Principal| Projection::about(&part.mean, part.matrix.as_ref());
+    pub fn fit(x: MatRef<'_, f64>, blocks: &[FeatureBlock]) -> Result<Self> {
+        let map = |part: &Pca| AffineMap::about(&part.mean, part.matrix.as_ref());
         let blocks = of_blocks(x, blocks)?.iter().map(map).collect::<Result<_>>()?;
         Ok(Self { blocks })
     }
 
     /// Puts the blocks' maps together, in the order of their inputs.
-    pub fn from_parts(blocks: Vec<Projection>) -> Self {
+    pub fn from_parts(blocks: Vec<AffineMap>) -> Self {
         Self { blocks }
     }
 
     /// The maps of the blocks.
-    pub fn blocks(&self) -> &[Projection] {
+    pub fn blocks(&self) -> &[AffineMap] {
         &self.blocks
     }
 
     /// Length K of an input.
     pub fn inputs(&self) -> usize {
         // A map to no numbers at all may say that it reads any number of them.
-        self.blocks.iter().map(Projection::inputs).fold(0, usize::saturating_add)
+        self.blocks.iter().map(AffineMap::inputs).fold(0, usize::saturating_add)
     }
 
     /// How many components there are of all blocks.
     pub fn outputs(&self) -> usize {
-        self.blocks.iter().map(Projection::outputs).sum()
+        self.blocks.iter().map(AffineMap::outputs).sum()
     }
 
     /// The components of one input `x`, all finite. `single` is working memory.

@@ -15,9 +15,9 @@ use crate::linalg;
 use crate::model::Model;
 use crate::ridge::nystrom::NystromRidge;
 use crate::stream::SufficientStatistics;
-use crate::transform::affine_map::Projection;
-use crate::transform::learned_metric::{Group, Metric};
-use crate::transform::pca::{Block, of_blocks};
+use crate::transform::affine_map::AffineMap;
+use crate::transform::learned_metric::{TargetGroup, LearnedMetric};
+use crate::transform::pca::{FeatureBlock, of_blocks};
 
 /// Seeds of the choice of centres, and of the samples whose gradients are averaged.
 const CENTRE_SEED: u64 = 0;
@@ -40,29 +40,29 @@ const GRADIENT_SEED: u64 = 1;
 /// which is what makes predictions fast.
 ///
 /// ```
-/// use phalanx_rvm::{Block, GradientMetric, NystromRidge, Projected, faer::Mat};
+/// use phalanx_rvm::{FeatureBlock, ExpectedGradientOuterProduct, NystromRidge, GroupedRegressor, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(6, 400, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
 /// let y = Mat::from_fn(1, 400, |_, t| (4.0 * (x[(1, t)] + x[(2, t)])).sin());
 /// let nystrom = NystromRidge::default();
 /// let learning =
-///     GradientMetric { regression: nystrom.clone(), rounds: 2, centres: 100, gradients: 400, rank: 1 };
-/// let blocks = [Block { inputs: 6, components: 6 }];
+///     ExpectedGradientOuterProduct { regression: nystrom.clone(), rounds: 2, centres: 100, gradients: 400, rank: 1 };
+/// let blocks = [FeatureBlock { inputs: 6, components: 6 }];
 /// let metric = learning.fit(x.as_ref(), y.as_ref(), &blocks, &[vec![0]])?;
 ///
 /// // Of six inputs one number is left, and from it the target follows.
 /// let z = metric.projection.apply(x.as_ref())?;
 /// assert_eq!(z.nrows(), 1);
 /// let model = nystrom.fit(z.as_ref(), y.as_ref())?.model;
-/// let all = Projected::from_parts(metric, vec![model])?;
+/// let all = GroupedRegressor::from_parts(metric, vec![model])?;
 /// assert_eq!((all.inputs(), all.outputs()), (6, 1));
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct GradientMetric {
+pub struct ExpectedGradientOuterProduct {
     /// The regressions whose gradients are taken.
     pub regression: NystromRidge,
     /// How often a distance is learnt, at least 1.
@@ -76,7 +76,7 @@ pub struct GradientMetric {
     pub rank: usize,
 }
 
-impl GradientMetric {
+impl ExpectedGradientOuterProduct {
     /// How many times its rank a group may read before the last round.
     pub const WIDER: usize = 3;
 
@@ -86,9 +86,9 @@ impl GradientMetric {
         &self,
         x: MatRef<'_, f64>,
         y: MatRef<'_, f64>,
-        blocks: &[Block],
+        blocks: &[FeatureBlock],
         groups: &[Vec<usize>],
-    ) -> Result<Metric> {
+    ) -> Result<LearnedMetric> {
         self.check(ProblemSize::of(x, y))?;
         check::matrix("y", y)?;
         check::length("columns (samples) of y", x.ncols(), y.ncols())?;
@@ -105,11 +105,11 @@ impl GradientMetric {
         let directions = learnt.collect::<Result<Vec<_>>>()?;
         let ranks = directions.iter().map(Mat::nrows);
         let described = groups.iter().zip(ranks);
-        let groups: Vec<Group> =
-            described.map(|(outputs, rank)| Group { outputs: outputs.clone(), rank }).collect();
+        let groups: Vec<TargetGroup> =
+            described.map(|(outputs, rank)| TargetGroup { outputs: outputs.clone(), rank }).collect();
         let all = stacked(&directions, principal.nrows());
         let matrix = linalg::product(all.as_ref(), principal.as_ref());
-        Ok(Metric { projection: Projection::about(&mean, matrix.as_ref())?, groups })
+        Ok(LearnedMetric { projection: AffineMap::about(&mean, matrix.as_ref())?, groups })
     }
 
     /// Refuses settings out of range, and more Gaussians than a dense solver takes.
@@ -204,7 +204,7 @@ fn centred_product(a: MatRef<'_, f64>, x: MatRef<'_, f64>, mean: &[f64]) -> Mat<
 }
 
 /// The mean of all inputs, and their blocks' principal components, d×K.
-fn components(x: MatRef<'_, f64>, blocks: &[Block]) -> Result<(Vec<f64>, Mat<f64>)> {
+fn components(x: MatRef<'_, f64>, blocks: &[FeatureBlock]) -> Result<(Vec<f64>, Mat<f64>)> {
     let parts = of_blocks(x, blocks)?;
     let mean = parts.iter().flat_map(|part| part.mean.iter().copied()).collect();
     let all = parts.iter().map(|part| part.matrix.nrows()).sum();

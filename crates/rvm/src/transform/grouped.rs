@@ -5,29 +5,29 @@ use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::model::regressor::Regressor;
 use crate::model::scratch::Scratch;
-use crate::transform::learned_metric::Metric;
+use crate::transform::learned_metric::LearnedMetric;
 
-/// Models of groups of targets, each of which looks at its own part of what a [`Metric`] makes of
+/// Models of groups of targets, each of which looks at its own part of what a [`LearnedMetric`] makes of
 /// the inputs.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "ProjectedParts", into = "ProjectedParts"))]
-pub struct Projected {
-    metric: Metric,
+#[cfg_attr(feature = "serde", serde(try_from = "GroupedParts", into = "GroupedParts"))]
+pub struct GroupedRegressor {
+    metric: LearnedMetric,
     models: Vec<Model>,
 }
 
 /// What is stored.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct ProjectedParts {
-    metric: Metric,
+struct GroupedParts {
+    metric: LearnedMetric,
     models: Vec<Model>,
 }
 
-impl Projected {
+impl GroupedRegressor {
     /// Puts a metric and the models of its groups together; every target belongs to one group.
-    pub fn from_parts(metric: Metric, models: Vec<Model>) -> Result<Self> {
+    pub fn from_parts(metric: LearnedMetric, models: Vec<Model>) -> Result<Self> {
         check::length("models of groups", metric.groups.len(), models.len())?;
         let ranks = metric.groups.iter().map(|group| group.rank);
         let read = ranks.fold(0_usize, usize::saturating_add);
@@ -46,7 +46,7 @@ impl Projected {
     }
 
     /// The metric.
-    pub fn metric(&self) -> &Metric {
+    pub fn metric(&self) -> &LearnedMetric {
         &self.metric
     }
 
@@ -56,7 +56,7 @@ impl Projected {
     }
 }
 
-impl Regressor for Projected {
+impl Regressor for GroupedRegressor {
     fn inputs(&self) -> usize {
         self.metric.projection.inputs()
     }
@@ -93,16 +93,16 @@ impl Regressor for Projected {
     }
 }
 
-impl TryFrom<ProjectedParts> for Projected {
+impl TryFrom<GroupedParts> for GroupedRegressor {
     type Error = Error;
 
-    fn try_from(parts: ProjectedParts) -> Result<Self> {
+    fn try_from(parts: GroupedParts) -> Result<Self> {
         Self::from_parts(parts.metric, parts.models)
     }
 }
 
-impl From<Projected> for ProjectedParts {
-    fn from(projected: Projected) -> Self {
+impl From<GroupedRegressor> for GroupedParts {
+    fn from(projected: GroupedRegressor) -> Self {
         Self { metric: projected.metric, models: projected.models }
     }
 }

@@ -2,12 +2,12 @@
 
 use faer::{Mat, MatRef};
 
-use crate::transform::affine_map::Projection;
+use crate::transform::affine_map::AffineMap;
 
 /// A group of targets and what it reads.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Group {
+pub struct TargetGroup {
     /// Indices of the targets.
     pub outputs: Vec<usize>,
     /// How many of the projected numbers are its own, after those of the groups before.
@@ -18,14 +18,14 @@ pub struct Group {
 /// looks at its own.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Metric {
+pub struct LearnedMetric {
     /// From the inputs to the numbers of all groups, one group's after the other's.
-    pub projection: Projection,
+    pub projection: AffineMap,
     /// The groups.
-    pub groups: Vec<Group>,
+    pub groups: Vec<TargetGroup>,
 }
 
-impl Metric {
+impl LearnedMetric {
     /// The part of the projected numbers `z`, d×n, that the group of this number reads.
     pub fn part<'a>(&self, group: usize, z: MatRef<'a, f64>) -> MatRef<'a, f64> {
         let start = self.groups[..group].iter().map(|group| group.rank).sum();

@@ -10,7 +10,7 @@ use crate::linalg;
 /// Inputs that belong together, and how many of their principal components are kept.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Block {
+pub struct FeatureBlock {
     /// How many inputs, at least 1, after those of the blocks before.
     pub inputs: usize,
     /// How many components at most.
@@ -18,13 +18,13 @@ pub struct Block {
 }
 
 /// The principal components of some inputs, brought to a total variance of 1.
-pub(crate) struct Principal {
+pub(crate) struct Pca {
     pub(crate) mean: Vec<f64>,
     /// d×K: orthogonal rows, each of the same length.
     pub(crate) matrix: Mat<f64>,
 }
 
-impl Principal {
+impl Pca {
     /// Of the rows of `x`, K×n, at most so many, the strongest first.
     pub(crate) fn of(x: MatRef<'_, f64>, components: usize) -> Result<Self> {
         check::matrix("x", x)?;
@@ -43,16 +43,16 @@ impl Principal {
 }
 
 /// The principal components of each block of the rows of `x`, K×n.
-pub(crate) fn of_blocks(x: MatRef<'_, f64>, blocks: &[Block]) -> Result<Vec<Principal>> {
+pub(crate) fn of_blocks(x: MatRef<'_, f64>, blocks: &[FeatureBlock]) -> Result<Vec<Pca>> {
     check::length("inputs of all blocks", x.nrows(), blocks.iter().map(|b| b.inputs).sum())?;
     let starts = blocks.iter().scan(0, |next, block| {
         let start = *next;
         *next += block.inputs;
         Some((start, block))
     });
-    let starts: Vec<(usize, &Block)> = starts.collect();
-    let of_block = |&(start, block): &(usize, &Block)| {
-        Principal::of(x.subrows(start, block.inputs), block.components)
+    let starts: Vec<(usize, &FeatureBlock)> = starts.collect();
+    let of_block = |&(start, block): &(usize, &FeatureBlock)| {
+        Pca::of(x.subrows(start, block.inputs), block.components)
     };
     starts.par_iter().map(of_block).collect()
 }

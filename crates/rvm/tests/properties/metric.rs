@@ -2,8 +2,8 @@
 
 use phalanx_rvm::faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, BasisSpec, PredictiveDeviation, Error, GradientMetric, Group, Metric, NystromRidge, NystromRegularisation, PilotSample,
-    Projected, Projection, ProjectionParts, Regressor, Scratch, SufficientStatistics, Bandwidth, random_subset,
+    FeatureBlock, BasisSpec, PredictiveDeviation, Error, ExpectedGradientOuterProduct, TargetGroup, LearnedMetric, NystromRidge, NystromRegularisation, PilotSample,
+    GroupedRegressor, AffineMap, AffineMapParts, Regressor, Scratch, SufficientStatistics, Bandwidth, random_subset,
 };
 use proptest::prelude::*;
 use rand_core::{Rng, SeedableRng};
@@ -29,18 +29,18 @@ fn targets(x: MatRef<'_, f64>) -> Mat<f64> {
     })
 }
 
-fn learner(rank: usize, rounds: usize) -> GradientMetric {
+fn learner(rank: usize, rounds: usize) -> ExpectedGradientOuterProduct {
     let penalty = NystromRegularisation::CrossValidated(vec![1e-4, 1e-3, 1e-2, 0.1]);
     let regression =
         NystromRidge { width: Bandwidth::Scatter(3.0), deviation: PredictiveDeviation::CrossValidated, penalty };
-    GradientMetric { regression, rounds, centres: 200, gradients: 100, rank }
+    ExpectedGradientOuterProduct { regression, rounds, centres: 200, gradients: 100, rank }
 }
 
-fn blocks() -> [Block; 2] {
-    [Block { inputs: 3, components: 3 }, Block { inputs: 5, components: 5 }]
+fn blocks() -> [FeatureBlock; 2] {
+    [FeatureBlock { inputs: 3, components: 3 }, FeatureBlock { inputs: 5, components: 5 }]
 }
 
-fn learnt(rounds: usize) -> (Mat<f64>, Mat<f64>, Metric) {
+fn learnt(rounds: usize) -> (Mat<f64>, Mat<f64>, LearnedMetric) {
     let x = uniform(INPUTS, 400, 1);
     let y = targets(x.as_ref());
     let metric =
@@ -49,7 +49,7 @@ fn learnt(rounds: usize) -> (Mat<f64>, Mat<f64>, Metric) {
 }
 
 /// How far each group's numbers move with each input.
-fn reach(metric: &Metric, group: usize) -> Vec<f64> {
+fn reach(metric: &LearnedMetric, group: usize) -> Vec<f64> {
     let parts = metric.projection.parts();
     let d = parts.offset.len();
     let matrix = Mat::from_fn(d, INPUTS, |row, k| f64::from(parts.matrix[k * d + row]));
@@ -72,7 +72,7 @@ fn a_distance_counts_what_its_targets_depend_on() {
 }
 
 /// Fits every group of a metric by way of sums.
-fn fit(metric: &Metric, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Projected {
+fn fit(metric: &LearnedMetric, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> GroupedRegressor {
     let z = metric.projection.apply(x).unwrap();
     let samples: Vec<usize> = (0..150).collect();
     let model = |group: usize| {
@@ -86,11 +86,11 @@ fn fit(metric: &Metric, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Projected {
         regression.fit_sums(&columns, &sums).unwrap().model
     };
     let models = (0..metric.groups.len()).map(model).collect();
-    Projected::from_parts(metric.clone(), models).unwrap()
+    GroupedRegressor::from_parts(metric.clone(), models).unwrap()
 }
 
 /// Mean squared errors of the two targets on new inputs, and the deviations announced.
-fn errors(projected: &Projected) -> [[f64; 2]; 2] {
+fn errors(projected: &GroupedRegressor) -> [[f64; 2]; 2] {
     let x = uniform(INPUTS, 200, 99);
     let y = targets(x.as_ref());
     let mut scratch = Scratch::default();
@@ -134,17 +134,17 @@ fn targets_that_do_not_vary_read_nothing() {
     let x = uniform(INPUTS, 60, 4);
     let y = Mat::from_fn(1, 60, |_, _| 2.5);
     let metric = learner(3, 2).fit(x.as_ref(), y.as_ref(), &blocks(), &[vec![0]]).unwrap();
-    assert_eq!(metric.groups, [Group { outputs: vec![0], rank: 0 }]);
+    assert_eq!(metric.groups, [TargetGroup { outputs: vec![0], rank: 0 }]);
 }
 
 #[test]
 fn what_cannot_be_learnt_from_is_refused_by_name() {
     let x = uniform(INPUTS, 60, 4);
     let y = targets(x.as_ref());
-    let learn = |learner: GradientMetric, blocks: &[Block], groups: &[Vec<usize>]| {
+    let learn = |learner: ExpectedGradientOuterProduct, blocks: &[FeatureBlock], groups: &[Vec<usize>]| {
         learner.fit(x.as_ref(), y.as_ref(), blocks, groups).unwrap_err()
     };
-    let short = [Block { inputs: 7, components: 2 }];
+    let short = [FeatureBlock { inputs: 7, components: 2 }];
     assert!(matches!(
         learn(learner(3, 1), &short, &[vec![0]]),
         Error::Shape { expected: 8, found: 7, .. }
@@ -155,7 +155,7 @@ fn what_cannot_be_learnt_from_is_refused_by_name() {
     );
     assert!(matches!(learn(learner(0, 1), &blocks(), &[vec![0]]), Error::Count { .. }));
     assert!(matches!(learn(learner(3, 0), &blocks(), &[vec![0]]), Error::Count { .. }));
-    let none = GradientMetric { centres: 0, ..learner(3, 1) };
+    let none = ExpectedGradientOuterProduct { centres: 0, ..learner(3, 1) };
     assert!(matches!(learn(none, &blocks(), &[vec![0]]), Error::Count { .. }));
 }
 
@@ -164,9 +164,9 @@ fn parts_that_do_not_fit_are_refused() {
     let (x, y, metric) = learnt(1);
     let good = fit(&metric, x.as_ref(), y.as_ref());
     let models = good.models().to_vec();
-    assert!(Projected::from_parts(metric.clone(), models.clone()).is_ok());
-    assert!(Projected::from_parts(metric.clone(), models[..1].to_vec()).is_err());
-    let spoils: [fn(&mut Metric); 4] = [
+    assert!(GroupedRegressor::from_parts(metric.clone(), models.clone()).is_ok());
+    assert!(GroupedRegressor::from_parts(metric.clone(), models[..1].to_vec()).is_err());
+    let spoils: [fn(&mut LearnedMetric); 4] = [
         |metric| metric.groups[0].rank = 2,
         |metric| metric.groups[0].rank = usize::MAX,
         |metric| metric.groups[1].outputs = vec![0],
@@ -175,14 +175,14 @@ fn parts_that_do_not_fit_are_refused() {
     for (k, spoil) in spoils.into_iter().enumerate() {
         let mut spoilt = metric.clone();
         spoil(&mut spoilt);
-        assert!(Projected::from_parts(spoilt, models.clone()).is_err(), "spoil {k}");
+        assert!(GroupedRegressor::from_parts(spoilt, models.clone()).is_err(), "spoil {k}");
     }
-    let parts = ProjectionParts { inputs: 2, matrix: vec![1.0; 6], offset: vec![0.0; 3] };
-    assert!(Projection::from_parts(parts.clone()).is_ok());
-    let unusable = ProjectionParts { matrix: vec![f32::NAN; 6], ..parts.clone() };
-    let longer = ProjectionParts { inputs: usize::MAX, ..parts };
+    let parts = AffineMapParts { inputs: 2, matrix: vec![1.0; 6], offset: vec![0.0; 3] };
+    assert!(AffineMap::from_parts(parts.clone()).is_ok());
+    let unusable = AffineMapParts { matrix: vec![f32::NAN; 6], ..parts.clone() };
+    let longer = AffineMapParts { inputs: usize::MAX, ..parts };
     for bad in [unusable, longer] {
-        assert!(matches!(Projection::from_parts(bad), Err(Error::Parts { .. })));
+        assert!(matches!(AffineMap::from_parts(bad), Err(Error::Parts { .. })));
     }
 }
 
@@ -197,8 +197,8 @@ proptest! {
             of.col_iter().flat_map(|c| c.iter().map(|&v| v as f32).collect::<Vec<_>>()).collect()
         };
         let parts =
-            ProjectionParts { inputs, matrix: single(&matrix), offset: single(&offset) };
-        let z = Projection::from_parts(parts).unwrap().apply(x.as_ref()).unwrap();
+            AffineMapParts { inputs, matrix: single(&matrix), offset: single(&offset) };
+        let z = AffineMap::from_parts(parts).unwrap().apply(x.as_ref()).unwrap();
         for i in 0..3 {
             for row in 0..outputs {
                 let slow: f64 = (0..inputs).map(|k| matrix[(row, k)] * x[(k, i)]).sum();
@@ -211,8 +211,8 @@ proptest! {
     fn inputs_that_are_no_numbers_are_refused(value in prop_oneof![
         Just(f64::NAN), Just(f64::INFINITY), Just(1e200)
     ]) {
-        let parts = ProjectionParts { inputs: 2, matrix: vec![1.0; 2], offset: vec![0.0] };
-        let projection = Projection::from_parts(parts).unwrap();
+        let parts = AffineMapParts { inputs: 2, matrix: vec![1.0; 2], offset: vec![0.0] };
+        let projection = AffineMap::from_parts(parts).unwrap();
         let refused = projection.apply_into(&[0.0, value], &mut Vec::new(), &mut Vec::new());
         let named = matches!(refused, Err(Error::BadValue { row: 1, .. }));
         prop_assert!(named);

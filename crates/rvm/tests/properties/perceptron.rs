@@ -2,8 +2,8 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, Components, Error, Fit, Mlp, PcaMlp, MlpParts, MlpTrainer,
-    Projection, ProjectionParts, Regressor, Scratch, random_subset,
+    FeatureBlock, BlockPca, Error, Fit, Mlp, PcaMlp, MlpParts, MlpTrainer,
+    AffineMap, AffineMapParts, Regressor, Scratch, random_subset,
 };
 use proptest::prelude::*;
 
@@ -80,8 +80,8 @@ proptest! {
     #[test]
     fn components_turn_and_scale_blocks(seed in any::<u64>(), first in 1..4_usize) {
         let x = Source::new(seed).matrix(first + 3, 60);
-        let blocks = [first, 3].map(|inputs| Block { inputs, components: inputs });
-        let components = Components::fit(x.as_ref(), &blocks).unwrap();
+        let blocks = [first, 3].map(|inputs| FeatureBlock { inputs, components: inputs });
+        let components = BlockPca::fit(x.as_ref(), &blocks).unwrap();
         prop_assert_eq!((components.inputs(), components.outputs()), (first + 3, first + 3));
         let z = components.apply(x.as_ref()).unwrap();
         for (start, count) in [(0, first), (first, 3)] {
@@ -162,13 +162,13 @@ fn what_cannot_be_learnt_from_is_named() {
     assert!(matches!(none, Err(Error::Empty { .. })));
 }
 
-fn layer(inputs: usize, outputs: usize) -> Projection {
+fn layer(inputs: usize, outputs: usize) -> AffineMap {
     let (matrix, offset) = (vec![0.5; inputs * outputs], vec![0.0; outputs]);
-    Projection::from_parts(ProjectionParts { inputs, matrix, offset }).unwrap()
+    AffineMap::from_parts(AffineMapParts { inputs, matrix, offset }).unwrap()
 }
 
 /// Of layers and deviations, in standardised units.
-fn network(layers: Vec<Projection>, std: Vec<f64>) -> Result<Mlp, Error> {
+fn network(layers: Vec<AffineMap>, std: Vec<f64>) -> Result<Mlp, Error> {
     let (mean, scale) = (vec![0.0; std.len()], vec![1.0; std.len()]);
     Mlp::from_parts(MlpParts { layers, mean, scale, std })
 }
@@ -196,14 +196,14 @@ fn parts_that_do_not_fit_are_refused() {
         spoil(&mut parts);
         assert!(Mlp::from_parts(parts).is_err(), "spoil {k}");
     }
-    let components = |outputs| Components::from_parts(vec![layer(2, 1), layer(1, outputs)]);
+    let components = |outputs| BlockPca::from_parts(vec![layer(2, 1), layer(1, outputs)]);
     assert!(PcaMlp::from_parts(components(1), network.clone()).is_err());
     let own = PcaMlp::from_parts(components(2), network).unwrap();
     assert_eq!((own.inputs(), own.outputs()), (3, 1));
     // So many inputs that their number overflows, of which none is read.
-    let nothing = ProjectionParts { inputs: usize::MAX, matrix: vec![], offset: vec![] };
-    let nothing = Projection::from_parts(nothing).unwrap();
-    assert_eq!(Components::from_parts(vec![nothing.clone(), nothing]).inputs(), usize::MAX);
+    let nothing = AffineMapParts { inputs: usize::MAX, matrix: vec![], offset: vec![] };
+    let nothing = AffineMap::from_parts(nothing).unwrap();
+    assert_eq!(BlockPca::from_parts(vec![nothing.clone(), nothing]).inputs(), usize::MAX);
     let (mut mean, mut std) = ([0.0], [0.0]);
     let short = own.predict_into(&[1.0, 2.0], &mut Scratch::default(), &mut mean, &mut std);
     assert!(matches!(short, Err(Error::Shape { .. })));
@@ -215,7 +215,7 @@ fn parts_that_do_not_fit_are_refused() {
 #[test]
 fn stored_networks_come_back_and_spoilt_ones_do_not() {
     let network = network(vec![layer(3, 2), layer(2, 1)], vec![0.1]).unwrap();
-    let own = PcaMlp::from_parts(Components::from_parts(vec![layer(4, 3)]), network);
+    let own = PcaMlp::from_parts(BlockPca::from_parts(vec![layer(4, 3)]), network);
     let own = own.unwrap();
     let bytes = postcard::to_allocvec(&own).unwrap();
     assert_eq!(postcard::from_bytes::<PcaMlp>(&bytes).unwrap(), own);

@@ -2,8 +2,8 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Block, AgarwalTriggs, TwoStageSelection, BasisSpec, Error, OrthogonalLeastSquares, GradientMetric, Kernel, KernelRidge,
-    ArdRvm, Model, MultiOutputRvm, NystromRidge, MlpTrainer, PilotSample, Projected, Regressor, Result,
+    FeatureBlock, AgarwalTriggs, TwoStageSelection, BasisSpec, Error, OrthogonalLeastSquares, ExpectedGradientOuterProduct, Kernel, KernelRidge,
+    ArdRvm, Model, MultiOutputRvm, NystromRidge, MlpTrainer, PilotSample, GroupedRegressor, Regressor, Result,
     Ridge, Stop, SufficientStatistics, RelevanceVectorMachine, Bandwidth, random_subset,
 };
 
@@ -176,14 +176,14 @@ fn cascade() {
 #[test]
 fn learnt_metric() {
     let regression = NystromRidge::default();
-    let learning = GradientMetric {
+    let learning = ExpectedGradientOuterProduct {
         regression: regression.clone(),
         rounds: 1,
         centres: CENTRES,
         gradients: CENTRES,
         rank: 4,
     };
-    let blocks = [Block { inputs: 6, components: 6 }];
+    let blocks = [FeatureBlock { inputs: 6, components: 6 }];
     alike(&ROWS, |x, y| {
         let groups = [vec![0, 1], vec![2]];
         let metric = learning.fit(x.as_ref(), y.as_ref(), &blocks, &groups).unwrap();
@@ -193,7 +193,7 @@ fn learnt_metric() {
             let (x, y) = (metric.part(group, z.as_ref()), metric.targets(group, y.as_ref()));
             regression.fit_on(x, y.as_ref(), &centres).unwrap().model
         };
-        let projected = Projected::from_parts(metric.clone(), vec![model(0), model(1)]).unwrap();
+        let projected = GroupedRegressor::from_parts(metric.clone(), vec![model(0), model(1)]).unwrap();
         error(|x| projected.predict_with_std(x).unwrap().0)
     });
 }
