@@ -11,7 +11,7 @@ use phalanx::{
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 use phalanx_refine::Refinement;
-use phalanx_rvm::{ConditionalDensity, Standardiser};
+use phalanx_rvm::{ResidualKde, StandardScaler};
 use rayon::prelude::*;
 
 use crate::held_out::errors::mean_error_deg;
@@ -186,7 +186,7 @@ fn from_neighbours(
     let all: Vec<usize> = (0..train.count().min(KNOWN)).collect();
     let known = described(train, &all)?;
     let asked = described(&questions.test, &questions.numbers)?;
-    let scaling = Standardiser::fit(known.as_ref())?;
+    let scaling = StandardScaler::fit(known.as_ref())?;
     let (known, asked) = (scaling.apply(known.as_ref())?, scaling.apply(asked.as_ref())?);
     let neighbours = |number: usize| -> Vec<Pose> {
         let query = asked.col_as_slice(number);
@@ -210,7 +210,7 @@ fn middles(poses: &[Pose]) -> Result<Vec<Pose>> {
         all.row_iter().map(|row| row.iter().sum::<f64>() / poses.len() as f64).collect();
     let means = Mat::from_fn(all.nrows(), all.ncols(), |row, _| mean[row]);
     let units = vec![1.0; mean.len()];
-    let density = ConditionalDensity::fit(means.as_ref(), all.as_ref(), &units, poses.len())?;
+    let density = ResidualKde::fit(means.as_ref(), all.as_ref(), &units, poses.len())?;
     let points = density.hypotheses(&mean, MOST).context("poses of neighbours")?;
     Ok(points.into_iter().map(|point| Pose(std::array::from_fn(|dof| point.mean[dof]))).collect())
 }

@@ -21,7 +21,7 @@ pub struct Estimator {
     hand: HandShape,
     descriptor: Descriptor,
     regression: Regression,
-    errors: Option<ConditionalDensity>,
+    errors: Option<ResidualKde>,
 }
 
 /// What is known of a hand after looking at it.
@@ -77,7 +77,7 @@ impl Estimator {
     ///
     /// # Errors
     /// Errors of something other than poses.
-    pub fn with_errors(self, errors: ConditionalDensity) -> Result<Self> {
+    pub fn with_errors(self, errors: ResidualKde) -> Result<Self> {
         let (found, expected) = (errors.outputs(), Dof::COUNT);
         if found != expected {
             return Err(Error::Mismatch { part: "numbers in its errors", found, expected });
@@ -116,7 +116,7 @@ impl Estimator {
     }
 
     /// How its estimates err, if it has [learnt it](Self::learn_errors).
-    pub fn errors(&self) -> Option<&ConditionalDensity> {
+    pub fn errors(&self) -> Option<&ResidualKde> {
         self.errors.as_ref()
     }
 

@@ -3,7 +3,7 @@
 use faer::Mat;
 use phalanx_hand::{Dof, Pose, Unit};
 use phalanx_refine::{Evidence, Refined, Refinement};
-use phalanx_rvm::ConditionalDensity;
+use phalanx_rvm::ResidualKde;
 use rayon::prelude::*;
 
 use crate::estimator::known;
@@ -81,7 +81,7 @@ impl Estimator {
             Unit::Length => MM_PER_RADIAN,
         });
         let (estimates, truth) = (estimates.as_ref(), truth.as_ref());
-        self.with_errors(ConditionalDensity::fit(estimates, truth, &units, neighbours)?)
+        self.with_errors(ResidualKde::fit(estimates, truth, &units, neighbours)?)
     }
 
     /// At most `most` poses that may be behind an estimate, the estimate's own first and the others

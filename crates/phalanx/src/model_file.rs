@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
 use phalanx_rvm::{
-    ConditionalDensity, ConditionalDensityParts, Model, ModelParts, PcaMlp, GroupedRegressor,
+    ResidualKde, ResidualKdeParts, Model, ModelParts, PcaMlp, GroupedRegressor,
 };
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +21,7 @@ struct Payload<'a> {
     hand: Cow<'a, HandShape>,
     descriptor: Cow<'a, Descriptor>,
     regression: Stored<'a>,
-    errors: Option<Cow<'a, ConditionalDensityParts>>,
+    errors: Option<Cow<'a, ResidualKdeParts>>,
 }
 
 /// A regression in plain numbers.
@@ -68,7 +68,7 @@ impl Estimator {
         let estimator = Self::from_parts(rig, hand, descriptor.into_owned(), regression)?;
         match errors {
             Some(parts) => {
-                estimator.with_errors(ConditionalDensity::from_parts(parts.into_owned())?)
+                estimator.with_errors(ResidualKde::from_parts(parts.into_owned())?)
             }
             None => Ok(estimator),
         }

@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 
 use crate::basis::spec::BasisSpec;
-use crate::data::scaler::Standardiser;
+use crate::data::scaler::StandardScaler;
 use crate::model::Model;
 use crate::model::parts::{ModelParts, Posterior};
 
@@ -78,7 +78,7 @@ pub(crate) fn model(
 }
 
 /// Means of the targets, in their units.
-fn bias(targets: &Standardiser, standardised: &[f64]) -> Vec<f64> {
+fn bias(targets: &StandardScaler, standardised: &[f64]) -> Vec<f64> {
     let units = targets.mean().iter().zip(targets.scale());
     units.zip(standardised).map(|((mean, scale), z)| mean + scale * z).collect()
 }

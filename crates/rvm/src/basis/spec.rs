@@ -6,7 +6,7 @@ use crate::basis::gaussians::Gaussians;
 use crate::basis::kernel::{self, Kernel, Bandwidth};
 use crate::data::check;
 use crate::data::problem::Problem;
-use crate::data::scaler::Standardiser;
+use crate::data::scaler::StandardScaler;
 use crate::error::{Error, Result};
 use crate::model::parts::Basis;
 
@@ -37,8 +37,8 @@ pub struct PilotSample<'a> {
 /// pilot are left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BasisSpec {
-    inputs: Standardiser,
-    targets: Standardiser,
+    inputs: StandardScaler,
+    targets: StandardScaler,
     kernel: Kernel,
     /// Inputs that the basis reads; they vary.
     features: Vec<usize>,
@@ -150,11 +150,11 @@ impl BasisSpec {
         self.kernel
     }
 
-    pub(crate) fn input_scaling(&self) -> &Standardiser {
+    pub(crate) fn input_scaling(&self) -> &StandardScaler {
         &self.inputs
     }
 
-    pub(crate) fn target_scaling(&self) -> &Standardiser {
+    pub(crate) fn target_scaling(&self) -> &StandardScaler {
         &self.targets
     }
 
@@ -247,7 +247,7 @@ impl BasisSpec {
 fn near(
     what: &'static str,
     samples: MatRef<'_, f64>,
-    pilot: &Standardiser,
+    pilot: &StandardScaler,
     rows: &[usize],
 ) -> Result<()> {
     for column in 0..samples.ncols() {

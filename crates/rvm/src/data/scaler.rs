@@ -19,11 +19,11 @@ const ABSOLUTE_FLOOR: f64 = 1e-150;
 /// and 0 becomes its constant again, exactly.
 ///
 /// ```
-/// use phalanx_rvm::{Standardiser, faer::mat};
+/// use phalanx_rvm::{StandardScaler, faer::mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = mat![[1.0, 3.0], [5.0, 5.0]]; // the second row does not vary
-/// let standardiser = Standardiser::fit(x.as_ref())?;
+/// let standardiser = StandardScaler::fit(x.as_ref())?;
 /// assert_eq!(standardiser.scale(), [1.0, 0.0]);
 /// let z = standardiser.apply(x.as_ref())?;
 /// assert_eq!(z, mat![[-1.0, 1.0], [0.0, 0.0]]);
@@ -32,12 +32,12 @@ const ABSOLUTE_FLOOR: f64 = 1e-150;
 /// # }
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Standardiser {
+pub struct StandardScaler {
     mean: Vec<f64>,
     scale: Vec<f64>,
 }
 
-impl Standardiser {
+impl StandardScaler {
     /// Measures the rows of `x`, K×I with a sample in each column.
     pub fn fit(x: MatRef<'_, f64>) -> Result<Self> {
         check::matrix("x", x)?;

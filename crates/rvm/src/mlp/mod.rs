@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use crate::data::check;
 use crate::data::permutation::shuffle;
-use crate::data::scaler::Standardiser;
+use crate::data::scaler::StandardScaler;
 use crate::error::{Error, Result};
 use crate::mlp::adam::Adam;
 use crate::mlp::layers::{Layers, DropoutMask, Pass};
@@ -95,7 +95,7 @@ impl MlpTrainer {
     ) -> Result<Fit<Mlp>> {
         self.check()?;
         check_inputs(x)?;
-        let targets = Standardiser::fit(y)?;
+        let targets = StandardScaler::fit(y)?;
         check::length("columns (samples) of y", x.ncols(), y.ncols())?;
         let scaling = Scaling::of(x);
         let samples = Samples::new(x, y, &scaling, &targets, self.seed);
@@ -204,7 +204,7 @@ fn one_cycle(step: usize, steps: usize) -> f64 {
 
 /// The layers with the scaling of inputs in the first, and nothing in the last for targets that do not
 /// vary.
-fn folded(layers: &Layers, scaling: &Scaling, targets: &Standardiser) -> Result<Vec<AffineMap>> {
+fn folded(layers: &Layers, scaling: &Scaling, targets: &StandardScaler) -> Result<Vec<AffineMap>> {
     let last = layers.count() - 1;
     let varying = targets.varying();
     let mut projections = Vec::with_capacity(layers.count());

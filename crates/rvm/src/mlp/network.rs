@@ -1,7 +1,7 @@
 //! A fitted perceptron.
 
 use crate::data::check;
-use crate::data::scaler::Standardiser;
+use crate::data::scaler::StandardScaler;
 use crate::error::{Error, Result};
 use crate::model::parts::known;
 use crate::model::regressor::Regressor;
@@ -43,7 +43,7 @@ impl Mlp {
         for (what, found) in [("means", &parts.mean), ("standard deviations", &parts.std)] {
             check::length(what, last.outputs(), found.len())?;
         }
-        Standardiser::from_parts(parts.mean.clone(), parts.scale.clone())?;
+        StandardScaler::from_parts(parts.mean.clone(), parts.scale.clone())?;
         if !parts.std.iter().all(|&std| check::usable(std) && std >= 0.0) {
             return Err(Error::Parts { field: "std", problem: "holds an unusable number" });
         }

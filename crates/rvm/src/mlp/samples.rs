@@ -4,7 +4,7 @@ use faer::{ColRef, Mat, MatRef};
 use rayon::prelude::*;
 
 use crate::data::permutation::random_subset;
-use crate::data::scaler::Standardiser;
+use crate::data::scaler::StandardScaler;
 use crate::error::{Error, Result};
 use crate::mlp::layers::{Layers, Pass};
 
@@ -68,7 +68,7 @@ impl<'a> Samples<'a> {
         x: MatRef<'a, f32>,
         y: MatRef<'_, f64>,
         scaling: &'a Scaling,
-        targets: &Standardiser,
+        targets: &StandardScaler,
         seed: u64,
     ) -> Self {
         let varying = targets.varying();
@@ -117,7 +117,7 @@ impl<'a> Samples<'a> {
 
     /// The root mean square error of each target, in its own unit, or the target's own deviation
     /// where too few samples are held out; 0 of those that do not vary.
-    pub(super) fn deviations(&self, layers: &Layers, targets: &Standardiser) -> Vec<f64> {
+    pub(super) fn deviations(&self, layers: &Layers, targets: &StandardScaler) -> Vec<f64> {
         let mut deviations = targets.scale().to_vec();
         let varying = targets.varying();
         if varying.is_empty() || self.held_out.len() < LEAST_HELD_OUT {

@@ -10,14 +10,14 @@ use crate::model::scratch::Scratch;
 /// A lower triangular matrix M over some of a model's columns.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Factor {
+pub struct CholeskyFactor {
     /// Columns of the model that M applies to.
     pub columns: Vec<usize>,
     /// M's columns from the diagonal down, one after the other: n(n+1)/2 numbers.
     pub packed: Vec<f64>,
 }
 
-impl Factor {
+impl CholeskyFactor {
     /// Packs a lower triangular matrix over `columns`.
     pub(crate) fn pack(columns: Vec<usize>, lower: MatRef<'_, f64>) -> Self {
         let n = columns.len();

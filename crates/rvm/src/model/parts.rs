@@ -2,7 +2,7 @@
 
 use crate::data::check::{numbers, part};
 use crate::error::Result;
-use crate::model::cholesky_factor::Factor;
+use crate::model::cholesky_factor::CholeskyFactor;
 
 /// Everything that a [`Model`](crate::Model) is made of, in plain vectors.
 ///
@@ -60,12 +60,12 @@ pub enum Basis {
 pub enum Posterior {
     /// Gaussian over the weights: one covariance shared by all targets, or one per target. The
     /// multiple is ‖M φ‖² over centred columns φ.
-    Weights(Vec<Factor>),
+    Weights(Vec<CholeskyFactor>),
     /// Gaussian process over all samples with prior variance noise/λ: it grows to the prior far
     /// from the samples. The multiple is (k̃(x,x) − ‖M k̃(x)‖²)/λ + 1/I for the centred kernel k̃.
     Process {
         /// M with MᵀM = (K̃ + λI)⁻¹.
-        factor: Factor,
+        factor: CholeskyFactor,
         /// λ > 0.
         lambda: f64,
     },

@@ -7,7 +7,7 @@ use crate::data::check;
 use crate::error::{Error, Result};
 use crate::linalg::axpy;
 use crate::model::Model;
-use crate::model::cholesky_factor::Factor;
+use crate::model::cholesky_factor::CholeskyFactor;
 use crate::model::parts::{Basis, Posterior};
 use crate::model::regressor::Regressor;
 use crate::model::scratch::Scratch;
@@ -152,7 +152,7 @@ impl Model {
     }
 
     /// Variance of a centred Gaussian process as a multiple of the noise variance.
-    fn process_spread(&self, factor: &Factor, lambda: f64, scratch: &mut Scratch) -> f64 {
+    fn process_spread(&self, factor: &CholeskyFactor, lambda: f64, scratch: &mut Scratch) -> f64 {
         let n = scratch.phi.len() as f64;
         // Columns are centred over the samples; centring over the kernel's other argument too
         // makes k̃(x, xᵢ), and k̃(x, x) from k(x, x) = 1.

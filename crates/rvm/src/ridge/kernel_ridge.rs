@@ -11,7 +11,7 @@ use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::linalg;
-use crate::model::cholesky_factor::Factor;
+use crate::model::cholesky_factor::CholeskyFactor;
 use crate::model::parts::Posterior;
 use crate::model::report::{Fit, Report, Trace};
 use crate::ridge::penalised::Penalised;
@@ -89,7 +89,7 @@ impl KernelRidge {
         let dual =
             Dual::solve(&centred, design.targets(), lambda).ok_or(Error::Singular { size: n })?;
         let kept: Vec<usize> = (0..n).collect();
-        let factor = Factor::pack(kept.clone(), dual.factor.as_ref());
+        let factor = CholeskyFactor::pack(kept.clone(), dual.factor.as_ref());
         let posterior = Posterior::Process { factor, lambda };
         let weights = dual.weights.as_ref();
         let model = normal_equations::model(&design, &kept, weights, &dual.noise(), posterior);

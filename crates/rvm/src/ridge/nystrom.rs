@@ -13,7 +13,7 @@ use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::linalg;
 use crate::model::Model;
-use crate::model::cholesky_factor::Factor;
+use crate::model::cholesky_factor::CholeskyFactor;
 use crate::model::parts::Posterior;
 use crate::model::report::{Fit, Report, Trace};
 use crate::ridge::penalised;
@@ -230,7 +230,7 @@ impl<'a> Whitened<'a> {
                 // M of the columns themselves is M L⁻¹.
                 factor = factor.transpose().to_owned();
                 linalg::upper_solve(lower.transpose(), &mut factor);
-                Factor::pack(kept.clone(), factor.transpose())
+                CholeskyFactor::pack(kept.clone(), factor.transpose())
             }
             PredictiveDeviation::CrossValidated => {
                 let samples = self.equations.samples() as f64;
@@ -240,7 +240,7 @@ impl<'a> Whitened<'a> {
                         *noise *= (samples / left).sqrt();
                     }
                 }
-                Factor { columns: Vec::new(), packed: Vec::new() }
+                CholeskyFactor { columns: Vec::new(), packed: Vec::new() }
             }
         };
         let posterior = Posterior::Weights(vec![factor]);

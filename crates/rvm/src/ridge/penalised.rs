@@ -7,7 +7,7 @@ use crate::basis::normal_equations::Equations;
 use crate::error::{Error, Result};
 use crate::linalg;
 use crate::model::Model;
-use crate::model::cholesky_factor::Factor;
+use crate::model::cholesky_factor::CholeskyFactor;
 use crate::model::parts::Posterior;
 
 /// The minimiser of ‖Y − ΦW‖² + Σₖ ‖wₖ‖²/dₖ².
@@ -71,7 +71,7 @@ impl Penalised {
         let (factor, used) = self.posterior();
         let weights = self.weights.as_ref();
         let noise = noise(equations, kept, weights, used);
-        let factor = Factor::pack((0..kept.len()).collect(), factor.as_ref());
+        let factor = CholeskyFactor::pack((0..kept.len()).collect(), factor.as_ref());
         normal_equations::model(equations, kept, weights, &noise, Posterior::Weights(vec![factor]))
     }
 }

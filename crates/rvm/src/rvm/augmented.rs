@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 
 use crate::data::check;
-use crate::data::scaler::Standardiser;
+use crate::data::scaler::StandardScaler;
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::model::parts::{Basis, Posterior, known};
@@ -80,7 +80,7 @@ impl AugmentedRvm {
                 phi[(t, k)] = *value;
             }
         }
-        let variance = Standardiser::fit(y)?.scale().iter().map(|scale| scale * scale).collect();
+        let variance = StandardScaler::fit(y)?.scale().iter().map(|scale| scale * scale).collect();
         Ok(Self { model, z, phi, variance })
     }
 

@@ -10,7 +10,7 @@ use crate::basis::spec::BasisSpec;
 use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
-use crate::model::cholesky_factor::Factor;
+use crate::model::cholesky_factor::CholeskyFactor;
 use crate::model::parts::Posterior;
 use crate::model::report::{Fit, Progress, Report};
 use crate::rvm::marginal_likelihood::ascent::Ascent;
@@ -153,7 +153,7 @@ impl MultiOutputRvm {
                 weights[(place(column), j)] = mu[(i, v)];
             }
         }
-        let factor = Factor::pack(active.iter().map(|&k| place(k)).collect(), factor.as_ref());
+        let factor = CholeskyFactor::pack(active.iter().map(|&k| place(k)).collect(), factor.as_ref());
         let posterior = Posterior::Weights(vec![factor]);
         let model = normal_equations::model(equations, &kept, weights.as_ref(), &noise, posterior);
         Ok((Fit { model, report: Report::new(vec![trace], None) }, found))

@@ -11,7 +11,7 @@ use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
 use crate::error::Result;
 use crate::model::Model;
-use crate::model::cholesky_factor::Factor;
+use crate::model::cholesky_factor::CholeskyFactor;
 use crate::model::parts::Posterior;
 use crate::model::report::{Fit, Progress, Report, Trace};
 use crate::rvm::marginal_likelihood::MarginalLikelihood;
@@ -154,13 +154,13 @@ struct Row {
     /// Noise deviation.
     noise: f64,
     /// M with Σ = σ² MᵀM, over columns of the design.
-    factor: Factor,
+    factor: CholeskyFactor,
 }
 
 impl Row {
     /// A target that does not vary.
     fn constant() -> Self {
-        let factor = Factor { columns: Vec::new(), packed: Vec::new() };
+        let factor = CholeskyFactor { columns: Vec::new(), packed: Vec::new() };
         Self { weights: Vec::new(), noise: 0.0, factor }
     }
 
@@ -168,7 +168,7 @@ impl Row {
         let noise = evidence.noise()[0].sqrt();
         let (active, weights, factor) = evidence.into_posterior()?;
         let weights = weights.col_as_slice(0).to_vec();
-        Ok(Self { weights, noise, factor: Factor::pack(active, factor.as_ref()) })
+        Ok(Self { weights, noise, factor: CholeskyFactor::pack(active, factor.as_ref()) })
     }
 }
 

@@ -8,7 +8,7 @@ use crate::basis::spec::BasisSpec;
 use crate::data::check;
 use crate::data::permutation::random_subset;
 use crate::data::problem::Problem;
-use crate::data::scaler::Standardiser;
+use crate::data::scaler::StandardScaler;
 use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::linalg;
@@ -149,7 +149,7 @@ impl ExpectedGradientOuterProduct {
     /// Of each sample the gradients of all standardised targets, m×d.
     fn gradients(&self, z: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Vec<Mat<f64>>> {
         let model = self.model(z, y)?;
-        let scale = Standardiser::fit(y)?;
+        let scale = StandardScaler::fit(y)?;
         let samples = random_subset(z.ncols(), self.gradients, GRADIENT_SEED);
         let gradient = |&sample: &usize| {
             let mut gradient = model.gradient(z.col(sample));

@@ -8,7 +8,7 @@ use faer::{Mat, MatRef};
 use crate::data::check;
 use crate::error::{Error, Result};
 use crate::model::parts::known;
-use crate::uncertainty::parts::ConditionalDensityParts;
+use crate::uncertainty::parts::ResidualKdeParts;
 use crate::uncertainty::principal_points::PrincipalPoints;
 
 /// The distribution of the targets given what a regression predicts.
@@ -22,13 +22,13 @@ use crate::uncertainty::principal_points::PrincipalPoints;
 /// (Flury 1990), placed so that the truth is as near as possible to the nearest of them.
 ///
 /// ```
-/// use phalanx_rvm::{ConditionalDensity, faer::Mat};
+/// use phalanx_rvm::{ResidualKde, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// // A regression that always says 0 where the truth is near −1 or near 1.
 /// let predictions = Mat::zeros(1, 40);
 /// let truth = Mat::from_fn(1, 40, |_, t| if t % 4 == 0 { -1.0 } else { 1.0 } + 0.001 * t as f64);
-/// let density = ConditionalDensity::fit(predictions.as_ref(), truth.as_ref(), &[1.0], 40)?;
+/// let density = ResidualKde::fit(predictions.as_ref(), truth.as_ref(), &[1.0], 40)?;
 /// let answers = density.hypotheses(&[0.0], 3)?;
 /// assert_eq!(answers[0].mean, [0.0], "the prediction comes first");
 /// assert!((answers[1].mean[0] - 1.0).abs() < 0.1 && (answers[2].mean[0] + 1.0).abs() < 0.1);
@@ -40,10 +40,10 @@ use crate::uncertainty::principal_points::PrincipalPoints;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
-    serde(try_from = "ConditionalDensityParts", into = "ConditionalDensityParts")
+    serde(try_from = "ResidualKdeParts", into = "ResidualKdeParts")
 )]
-pub struct ConditionalDensity {
-    parts: ConditionalDensityParts,
+pub struct ResidualKde {
+    parts: ResidualKdeParts,
 }
 
 /// One answer among several.
@@ -60,7 +60,7 @@ pub struct Hypothesis {
     pub weight: f64,
 }
 
-impl ConditionalDensity {
+impl ResidualKde {
     /// From a regression's predictions, m×n, for n samples that it was not fitted to, and their
     /// targets, m×n. Around a prediction the `neighbours` nearest of the samples speak.
     ///
@@ -80,7 +80,7 @@ impl ConditionalDensity {
         units.iter().try_for_each(|&unit| check::positive("unit", unit))?;
         within("neighbours", neighbours, predictions.ncols(), "from 1 to the number of samples")?;
         let flat = |of: MatRef<'_, f64>| of.col_iter().flat_map(|c| c.iter().copied()).collect();
-        Self::from_parts(ConditionalDensityParts {
+        Self::from_parts(ResidualKdeParts {
             outputs: units.len(),
             neighbours,
             units: units.to_vec(),
@@ -90,18 +90,18 @@ impl ConditionalDensity {
     }
 
     /// Puts one together from its parts, checked against each other.
-    pub fn from_parts(parts: ConditionalDensityParts) -> Result<Self> {
+    pub fn from_parts(parts: ResidualKdeParts) -> Result<Self> {
         parts.check()?;
         Ok(Self { parts })
     }
 
     /// Its parts.
-    pub fn into_parts(self) -> ConditionalDensityParts {
+    pub fn into_parts(self) -> ResidualKdeParts {
         self.parts
     }
 
     /// A look at the parts.
-    pub fn parts(&self) -> &ConditionalDensityParts {
+    pub fn parts(&self) -> &ResidualKdeParts {
         &self.parts
     }
 
@@ -132,7 +132,7 @@ impl ConditionalDensity {
     /// The residuals, in their units, of the samples whose predictions are nearest to this one,
     /// m×neighbours.
     fn residuals_near(&self, prediction: &[f64]) -> Mat<f64> {
-        let ConditionalDensityParts { outputs, neighbours, units, predictions, residuals } =
+        let ResidualKdeParts { outputs, neighbours, units, predictions, residuals } =
             &self.parts;
         let distance = |sample: &[f64]| -> f64 {
             let differences = sample.iter().zip(prediction).zip(units);
@@ -181,16 +181,16 @@ impl ConditionalDensity {
     }
 }
 
-impl TryFrom<ConditionalDensityParts> for ConditionalDensity {
+impl TryFrom<ResidualKdeParts> for ResidualKde {
     type Error = Error;
 
-    fn try_from(parts: ConditionalDensityParts) -> Result<Self> {
+    fn try_from(parts: ResidualKdeParts) -> Result<Self> {
         Self::from_parts(parts)
     }
 }
 
-impl From<ConditionalDensity> for ConditionalDensityParts {
-    fn from(density: ConditionalDensity) -> Self {
+impl From<ResidualKde> for ResidualKdeParts {
+    fn from(density: ResidualKde) -> Self {
         density.into_parts()
     }
 }

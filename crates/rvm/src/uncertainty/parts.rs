@@ -3,10 +3,10 @@
 use crate::data::check;
 use crate::error::Result;
 
-/// Everything that a [`ConditionalDensity`](crate::ConditionalDensity) is made of.
+/// Everything that a [`ResidualKde`](crate::ResidualKde) is made of.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct ConditionalDensityParts {
+pub struct ResidualKdeParts {
     /// Length m of a target vector.
     pub outputs: usize,
     /// Samples that speak for a prediction near them.
@@ -19,7 +19,7 @@ pub struct ConditionalDensityParts {
     pub residuals: Vec<f64>,
 }
 
-impl ConditionalDensityParts {
+impl ResidualKdeParts {
     pub(crate) fn check(&self) -> Result<()> {
         let samples = self.predictions.len().checked_div(self.outputs).unwrap_or(0);
         check::part("outputs", "must be at least 1", self.outputs == 0)?;

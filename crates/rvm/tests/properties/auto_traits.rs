@@ -1,12 +1,12 @@
 //! Everything public can be sent to, and shared between, threads.
 
 use phalanx_rvm::{
-    Basis, FeatureBlock, AgarwalTriggs, TwoStageSelection, BasisSpec, BlockPca, ConditionalDensity,
-    ConditionalDensityParts, PredictiveDeviation, Error, Factor, Fit, OrthogonalLeastSquares, ExpectedGradientOuterProduct,
+    Basis, FeatureBlock, AgarwalTriggs, TwoStageSelection, BasisSpec, BlockPca, ResidualKde,
+    ResidualKdeParts, PredictiveDeviation, Error, CholeskyFactor, Fit, OrthogonalLeastSquares, ExpectedGradientOuterProduct,
     TargetGroup, AugmentedRvm, Hypothesis, Kernel, KernelRidge, Regularisation, ArdRvm, LearnedMetric, Model,
     ModelParts, MultiOutputRvm, Mlp, PcaMlp, MlpParts, NystromRidge, NystromRegularisation,
     MlpTrainer, PilotSample, Posterior, Progress, GroupedRegressor, AffineMap, AffineMapParts, Regressor,
-    Report, Ridge, Scratch, Standardiser, Stop, SufficientStatistics, SufficientStatisticsParts, LengthScales, RelevanceVectorMachine, Trace, Bandwidth,
+    Report, Ridge, Scratch, StandardScaler, Stop, SufficientStatistics, SufficientStatisticsParts, LengthScales, RelevanceVectorMachine, Trace, Bandwidth,
 };
 
 const fn shared<T: Send + Sync>() {}
@@ -24,11 +24,11 @@ shared!(
     TwoStageSelection,
     BasisSpec,
     BlockPca,
-    ConditionalDensity,
-    ConditionalDensityParts,
+    ResidualKde,
+    ResidualKdeParts,
     PredictiveDeviation,
     Error,
-    Factor,
+    CholeskyFactor,
     Fit,
     Fit<Mlp>,
     OrthogonalLeastSquares,
@@ -59,7 +59,7 @@ shared!(
     Report,
     Ridge,
     Scratch,
-    Standardiser,
+    StandardScaler,
     Stop,
     SufficientStatistics,
     SufficientStatisticsParts,

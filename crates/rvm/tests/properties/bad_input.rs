@@ -3,7 +3,7 @@
 use faer::Mat;
 use phalanx_rvm::{
     AgarwalTriggs, TwoStageSelection, Error, OrthogonalLeastSquares, Kernel, KernelRidge, Regularisation, ArdRvm,
-    MultiOutputRvm, NystromRidge, NystromRegularisation, ProblemSize, Regressor, Ridge, Standardiser, Stop, RelevanceVectorMachine,
+    MultiOutputRvm, NystromRidge, NystromRegularisation, ProblemSize, Regressor, Ridge, StandardScaler, Stop, RelevanceVectorMachine,
     Bandwidth,
 };
 use proptest::prelude::*;
@@ -200,11 +200,11 @@ fn too_few_steps_are_reported_and_not_refused() {
 #[test]
 fn a_standardiser_is_undone_by_its_inverse() {
     let (x, _) = smooth(8, 3, 1, 20);
-    let standardiser = Standardiser::fit(x.as_ref()).unwrap();
+    let standardiser = StandardScaler::fit(x.as_ref()).unwrap();
     let back = standardiser.invert(standardiser.apply(x.as_ref()).unwrap().as_ref()).unwrap();
     assert!((&back - &x).norm_max() < 1e-15);
     let parts =
-        Standardiser::from_parts(standardiser.mean().to_vec(), standardiser.scale().to_vec());
+        StandardScaler::from_parts(standardiser.mean().to_vec(), standardiser.scale().to_vec());
     assert_eq!(parts.unwrap(), standardiser);
-    assert!(Standardiser::from_parts(vec![0.0], vec![-1.0]).is_err());
+    assert!(StandardScaler::from_parts(vec![0.0], vec![-1.0]).is_err());
 }

@@ -1,7 +1,7 @@
 //! Bridges against a literal transcription of the paper's section 4.
 
 use faer::{Mat, MatRef};
-use phalanx_rvm::{AgarwalTriggs, TwoStageSelection, Kernel, Regressor, Standardiser, Stop, Bandwidth};
+use phalanx_rvm::{AgarwalTriggs, TwoStageSelection, Kernel, Regressor, StandardScaler, Stop, Bandwidth};
 use proptest::prelude::*;
 
 use crate::problems::{GAUSSIAN, close, rows, smooth, solve};
@@ -71,8 +71,8 @@ proptest! {
         let bridges = AgarwalTriggs {
             kernel, nu, stop: Stop::Threshold(threshold), ..AgarwalTriggs::default()
         };
-        let scale = Standardiser::fit(y.as_ref())?;
-        let z = Standardiser::fit(x.as_ref())?.apply(x.as_ref())?;
+        let scale = StandardScaler::fit(y.as_ref())?;
+        let z = StandardScaler::fit(x.as_ref())?.apply(x.as_ref())?;
         let f = if linear { z } else { gaussian(z.as_ref(), 1.0 / 14.0) };
         let targets = scale.apply(y.as_ref())?;
         let (kept, a) = transcription(f.as_ref(), targets.as_ref(), &bridges, threshold);
@@ -133,7 +133,7 @@ fn everything_pruned_leaves_the_mean() {
     let fit = bridges.fit(x.as_ref(), y.as_ref()).unwrap();
     assert!(fit.report.converged && fit.model.weights().ncols() == 0);
     let (mean, std) = fit.model.predict_with_std(x.as_ref()).unwrap();
-    let scale = Standardiser::fit(y.as_ref()).unwrap();
+    let scale = StandardScaler::fit(y.as_ref()).unwrap();
     for j in 0..2 {
         assert_eq!(mean[(j, 7)], scale.mean()[j]);
         let deviation = scale.scale()[j] * (25.0_f64 / 24.0).sqrt();

@@ -1,7 +1,7 @@
 //! Hypotheses around a prediction: what they share, what they cover, what they cannot be made of.
 
 use faer::Mat;
-use phalanx_rvm::{ConditionalDensity, ConditionalDensityParts, Error, Hypothesis};
+use phalanx_rvm::{ResidualKde, ResidualKdeParts, Error, Hypothesis};
 use proptest::prelude::*;
 
 use crate::problems::Source;
@@ -27,7 +27,7 @@ proptest! {
         let (predictions, targets) = (source.matrix(m, n), source.matrix(m, n));
         let units = [1.0, scale, 2.0];
         let density =
-            ConditionalDensity::fit(predictions.as_ref(), targets.as_ref(), &units, n)?;
+            ResidualKde::fit(predictions.as_ref(), targets.as_ref(), &units, n)?;
         let prediction = [0.1, -0.2, 0.3];
         let hypotheses = density.hypotheses(&prediction, count)?;
         prop_assert!(hypotheses.len() <= count);
@@ -62,7 +62,7 @@ proptest! {
         let errors = source.matrix(m, n);
         let targets = &predictions + &errors;
         let density =
-            ConditionalDensity::fit(predictions.as_ref(), targets.as_ref(), &[1.0; 4], 200)?;
+            ResidualKde::fit(predictions.as_ref(), targets.as_ref(), &[1.0; 4], 200)?;
         let covered = |count: usize| -> phalanx_rvm::Result<f64> {
             let mut total = 0.0;
             for i in 0..n {
@@ -91,7 +91,7 @@ proptest! {
         let (predictions, targets) = (coarse(), coarse());
         let units = vec![1.0; m];
         let density =
-            ConditionalDensity::fit(predictions.as_ref(), targets.as_ref(), &units, n)?;
+            ResidualKde::fit(predictions.as_ref(), targets.as_ref(), &units, n)?;
         let hypotheses = density.hypotheses(predictions.col_as_slice(0), n)?;
         let total: f64 = hypotheses.iter().map(|h| h.weight).sum();
         prop_assert!((total - 1.0).abs() < 1e-12);
@@ -112,7 +112,7 @@ fn two_answers_are_told_apart() {
         predictions[(j, i)] + if j == 0 { side } else { 0.0 } + 0.1 * source.uniform()
     });
     let density =
-        ConditionalDensity::fit(predictions.as_ref(), targets.as_ref(), &[1.0; 2], 100).unwrap();
+        ResidualKde::fit(predictions.as_ref(), targets.as_ref(), &[1.0; 2], 100).unwrap();
     let hypotheses = density.hypotheses(&[0.0, 0.0], 3).unwrap();
     assert_eq!(hypotheses.len(), 3);
     assert!(hypotheses[0].weight < 1e-12, "nothing is near the mean of the two");
@@ -124,14 +124,14 @@ fn two_answers_are_told_apart() {
 }
 
 /// A change to a density's parts.
-type Change = fn(&mut ConditionalDensityParts);
+type Change = fn(&mut ResidualKdeParts);
 
 #[test]
 fn what_cannot_be_one_is_named() {
     let mut source = Source::new(8);
     let (p, t) = (source.matrix(2, 9), source.matrix(2, 9));
     let fit = |units: &[f64], neighbours| {
-        ConditionalDensity::fit(p.as_ref(), t.as_ref(), units, neighbours)
+        ResidualKde::fit(p.as_ref(), t.as_ref(), units, neighbours)
     };
     assert!(matches!(fit(&[1.0], 4), Err(Error::Shape { what: "units", .. })));
     assert!(matches!(fit(&[1.0, 0.0], 4), Err(Error::Parameter { name: "unit", .. })));
@@ -157,10 +157,10 @@ fn what_cannot_be_one_is_named() {
     for (expected, change) in changes {
         let mut parts = density.clone().into_parts();
         change(&mut parts);
-        match ConditionalDensity::from_parts(parts) {
+        match ResidualKde::from_parts(parts) {
             Err(Error::Parts { field, .. }) => assert_eq!(field, expected),
             other => panic!("{expected}: {other:?}"),
         }
     }
-    assert_eq!(ConditionalDensity::from_parts(density.clone().into_parts()).unwrap(), density);
+    assert_eq!(ResidualKde::from_parts(density.clone().into_parts()).unwrap(), density);
 }

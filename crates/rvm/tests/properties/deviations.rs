@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    ConditionalDensity, PredictiveDeviation, AugmentedRvm, Model, NystromRidge, MlpTrainer, Regressor, Scratch, RelevanceVectorMachine,
+    ResidualKde, PredictiveDeviation, AugmentedRvm, Model, NystromRidge, MlpTrainer, Regressor, Scratch, RelevanceVectorMachine,
 };
 use proptest::prelude::*;
 
@@ -54,7 +54,7 @@ proptest! {
             let penalty = phalanx_rvm::NystromRegularisation::Given(1e-9);
             let nystrom = NystromRidge { penalty, deviation, ..NystromRidge::default() };
             let model = nystrom.fit(x.as_ref(), y.as_ref())?.model;
-            let scale = phalanx_rvm::Standardiser::fit(y.as_ref())?.scale()[0];
+            let scale = phalanx_rvm::StandardScaler::fit(y.as_ref())?.scale()[0];
             prop_assert!(model.noise()[0] > 0.99 * scale, "{} {scale}", model.noise()[0]);
         }
     }
@@ -80,7 +80,7 @@ fn a_network_of_few_samples_knows_no_more_than_the_targets_tell() {
     let network = fitter.fit(x.as_ref(), y.as_ref()).unwrap().model;
     let (mut mean, mut std) = ([0.0; 2], [0.0; 2]);
     network.predict_into(&[0.1, 0.2], &mut Scratch::default(), &mut mean, &mut std).unwrap();
-    let scale = phalanx_rvm::Standardiser::fit(y.as_ref()).unwrap().scale()[0];
+    let scale = phalanx_rvm::StandardScaler::fit(y.as_ref()).unwrap().scale()[0];
     assert_eq!(std, [scale, f64::INFINITY]);
 }
 
@@ -91,7 +91,7 @@ fn a_hypothesis_of_one_sample_has_the_deviation_of_its_neighbourhood() {
     let residual = |t: usize| if t == 0 { 3.0 } else { 0.01 * t as f64 };
     let truth = Mat::from_fn(2, 9, |j, t| if j == 0 { residual(t) } else { 0.0 });
     let density =
-        ConditionalDensity::fit(predictions.as_ref(), truth.as_ref(), &[1.0, 1.0], 9).unwrap();
+        ResidualKde::fit(predictions.as_ref(), truth.as_ref(), &[1.0, 1.0], 9).unwrap();
     let hypotheses = density.hypotheses(&[0.0, 0.0], 3).unwrap();
     let lonely = hypotheses.iter().find(|h| (h.mean[0] - 3.0).abs() < 1e-9).expect("the outlier's");
     let all = ((0..9).map(|t| residual(t).powi(2)).sum::<f64>() / 9.0).sqrt();

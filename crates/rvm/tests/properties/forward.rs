@@ -1,7 +1,7 @@
 //! Forward selection against a search that solves every candidate's least squares problem.
 
 use faer::Mat;
-use phalanx_rvm::{OrthogonalLeastSquares, Kernel, Standardiser};
+use phalanx_rvm::{OrthogonalLeastSquares, Kernel, StandardScaler};
 use proptest::prelude::*;
 
 use crate::problems::{rows, smooth, solve};
@@ -14,8 +14,8 @@ fn penalised_error(
     y: &Mat<f64>,
     lambda: f64,
 ) -> phalanx_rvm::Result<impl Fn(&[usize]) -> f64 + use<>> {
-    let z = Standardiser::fit(x.as_ref())?.apply(x.as_ref())?;
-    let targets = Standardiser::fit(y.as_ref())?.apply(y.as_ref())?;
+    let z = StandardScaler::fit(x.as_ref())?.apply(x.as_ref())?;
+    let targets = StandardScaler::fit(y.as_ref())?.apply(y.as_ref())?;
     Ok(move |chosen: &[usize]| {
         let f = rows(z.as_ref(), chosen);
         let system = &f * f.transpose() + lambda * Mat::<f64>::identity(f.nrows(), f.nrows());

@@ -3,7 +3,7 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use phalanx_rvm::{
-    Basis, Error, AugmentedRvm, KernelRidge, MultiOutputRvm, Posterior, Regressor, Ridge, Standardiser,
+    Basis, Error, AugmentedRvm, KernelRidge, MultiOutputRvm, Posterior, Regressor, Ridge, StandardScaler,
     RelevanceVectorMachine,
 };
 use proptest::prelude::*;
@@ -48,7 +48,7 @@ proptest! {
         }
         let inverse = (m.transpose() * &m).full_piv_lu().solve(Mat::<f64>::identity(p, p));
         let gram = phi.transpose() * &phi;
-        let scale = Standardiser::fit(y.as_ref())?;
+        let scale = StandardScaler::fit(y.as_ref())?;
         for j in 0..2 {
             let alpha = (parts.noise[j] / scale.scale()[j]).powi(2);
             let system = Mat::from_fn(p + 1, p + 1, |i, k| match (i == p, k == p) {
@@ -75,7 +75,7 @@ proptest! {
         let far = Mat::from_fn(3, 1, |_, _| 1e3);
         let (_, std) = healed.predict_with_std(far.as_ref())?;
         let (_, plain) = model.predict_with_std(far.as_ref())?;
-        let scale = Standardiser::fit(y.as_ref())?;
+        let scale = StandardScaler::fit(y.as_ref())?;
         for j in 0..2 {
             let expected = plain[(j, 0)].hypot(scale.scale()[j]);
             prop_assert!((std[(j, 0)] / expected - 1.0).abs() < 1e-9);

@@ -1,7 +1,7 @@
 //! Kernel ridge regression against refitting without each sample, and as a Gaussian process.
 
 use faer::{Mat, MatRef};
-use phalanx_rvm::{KernelRidge, Regularisation, Regressor, Standardiser, Bandwidth};
+use phalanx_rvm::{KernelRidge, Regularisation, Regressor, StandardScaler, Bandwidth};
 use proptest::prelude::*;
 
 use crate::problems::{smooth, solve};
@@ -34,8 +34,8 @@ proptest! {
     fn leave_one_out_is_refitting_without_each_sample(seed in any::<u64>()) {
         let (n, m) = (20, 2);
         let (x, y) = smooth(seed, 3, m, n);
-        let z = Standardiser::fit(x.as_ref())?.apply(x.as_ref())?;
-        let targets = Standardiser::fit(y.as_ref())?.apply(y.as_ref())?;
+        let z = StandardScaler::fit(x.as_ref())?.apply(x.as_ref())?;
+        let targets = StandardScaler::fit(y.as_ref())?.apply(y.as_ref())?;
         let grid = vec![1e-3, 0.1, 3.0];
         let brute = |lambda: f64| {
             let mut total = 0.0;
@@ -68,7 +68,7 @@ proptest! {
         let (n, m) = (25, 2);
         let (x, y) = smooth(seed, 3, m, n);
         let (new, _) = smooth(seed ^ 7, 3, 1, 10);
-        let (inputs, outputs) = (Standardiser::fit(x.as_ref())?, Standardiser::fit(y.as_ref())?);
+        let (inputs, outputs) = (StandardScaler::fit(x.as_ref())?, StandardScaler::fit(y.as_ref())?);
         let (z, w) = (inputs.apply(x.as_ref())?, inputs.apply(new.as_ref())?);
         let targets = outputs.apply(y.as_ref())?;
         let all: Vec<usize> = (0..n).collect();

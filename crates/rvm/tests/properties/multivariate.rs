@@ -4,7 +4,7 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    BasisSpec, Kernel, MultiOutputRvm, PilotSample, Regressor, Standardiser, SufficientStatistics, RelevanceVectorMachine, Bandwidth,
+    BasisSpec, Kernel, MultiOutputRvm, PilotSample, Regressor, StandardScaler, SufficientStatistics, RelevanceVectorMachine, Bandwidth,
 };
 use proptest::prelude::*;
 
@@ -22,8 +22,8 @@ struct Slow {
 
 impl Slow {
     fn new(x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> phalanx_rvm::Result<Self> {
-        let phi = Standardiser::fit(x)?.apply(x)?.transpose().to_owned();
-        let y = Standardiser::fit(y)?.apply(y)?.transpose().to_owned();
+        let phi = StandardScaler::fit(x)?.apply(x)?.transpose().to_owned();
+        let y = StandardScaler::fit(y)?.apply(y)?.transpose().to_owned();
         let freedom = y.nrows() as f64 - 1.0;
         let noise = y.col_iter().map(|target| 0.1 * target.squared_norm_l2() / freedom).collect();
         let alpha = vec![f64::INFINITY; phi.ncols()];

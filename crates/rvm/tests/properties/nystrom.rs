@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Kernel, KernelRidge, Regularisation, NystromRidge, NystromRegularisation, PilotSample, Regressor, Standardiser, SufficientStatistics, Bandwidth,
+    Kernel, KernelRidge, Regularisation, NystromRidge, NystromRegularisation, PilotSample, Regressor, StandardScaler, SufficientStatistics, Bandwidth,
     random_subset,
 };
 use proptest::prelude::*;
@@ -70,7 +70,7 @@ proptest! {
         let (x, y) = smooth(seed, 3, 2, n);
         let (new, _) = smooth(seed ^ 7, 3, 1, 10);
         let chosen = random_subset(n, p, seed);
-        let (inputs, outputs) = (Standardiser::fit(x.as_ref())?, Standardiser::fit(y.as_ref())?);
+        let (inputs, outputs) = (StandardScaler::fit(x.as_ref())?, StandardScaler::fit(y.as_ref())?);
         let (z, t) = (inputs.apply(x.as_ref())?, outputs.apply(y.as_ref())?);
         let centres = columns(z.as_ref(), &chosen);
         let raw = kernel(centres.as_ref(), z.as_ref());
@@ -106,8 +106,8 @@ proptest! {
         let (n, p, m) = (50, 10, 2);
         let (x, y) = smooth(seed, 3, m, n);
         let chosen = random_subset(n, p, seed);
-        let z = Standardiser::fit(x.as_ref())?.apply(x.as_ref())?;
-        let t = Standardiser::fit(y.as_ref())?.apply(y.as_ref())?;
+        let z = StandardScaler::fit(x.as_ref())?.apply(x.as_ref())?;
+        let t = StandardScaler::fit(y.as_ref())?.apply(y.as_ref())?;
         let centres = columns(z.as_ref(), &chosen);
         let phi = centred(kernel(centres.as_ref(), z.as_ref()));
         let between = penalty(centres.as_ref());
@@ -148,7 +148,7 @@ fn inputs_that_do_not_vary_leave_the_mean() {
     let x = Mat::full(3, 30, 4.0);
     let model = NystromRidge::default().fit(x.as_ref(), y.as_ref()).unwrap().model;
     assert!(model.kept_samples().is_empty());
-    let outputs = Standardiser::fit(y.as_ref()).unwrap();
+    let outputs = StandardScaler::fit(y.as_ref()).unwrap();
     let mean = model.predict(x.as_ref().subcols(0, 1)).unwrap();
     for j in 0..2 {
         assert!((mean[(j, 0)] - outputs.mean()[j]).abs() < 1e-12);

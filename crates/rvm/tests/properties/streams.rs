@@ -166,7 +166,7 @@ proptest! {
         let kernel = Kernel::Gaussian(Bandwidth::Beta(0.1));
         let columns = BasisSpec::new(&PilotSample { x: px, y: py, samples: &samples }, kernel)?;
         let scale = |from: MatRef<'_, f64>, of: MatRef<'_, f64>| {
-            phalanx_rvm::Standardiser::fit(of).and_then(|s| s.apply(from))
+            phalanx_rvm::StandardScaler::fit(of).and_then(|s| s.apply(from))
         };
         let (z, t) = (scale(x.as_ref(), px)?, scale(y.as_ref(), py)?);
         let phi = |i: usize, c: usize| -> f64 {

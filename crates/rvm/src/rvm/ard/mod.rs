@@ -9,7 +9,7 @@ use crate::basis::design::Design;
 use crate::basis::kernel::{Kernel, Bandwidth};
 use crate::data::check;
 use crate::data::problem::Problem;
-use crate::data::scaler::Standardiser;
+use crate::data::scaler::StandardScaler;
 use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};
 use crate::model::report::{Fit, Progress, Report, Trace};
@@ -185,7 +185,7 @@ impl Learning {
             let relevant = width > IRRELEVANT * greatest;
             scale[input] = if relevant { scale[input] / width.sqrt() } else { 0.0 };
         }
-        let inputs = Standardiser::from_parts(self.problem.inputs.mean().to_vec(), scale)?;
+        let inputs = StandardScaler::from_parts(self.problem.inputs.mean().to_vec(), scale)?;
         let scaled = Problem::scaled(inputs, x, y)?;
         let design = Design::full(&scaled, Kernel::Gaussian(Bandwidth::Beta(1.0)))?;
         rvm.resume(&design, &self.vectors, observe)
