@@ -11,8 +11,8 @@ use faer::Mat;
 use phalanx::OrientationRule;
 use phalanx_multiview::Vocabulary;
 use phalanx_rvm::{
-    AgarwalTriggs, BasisSpec, Fit, OrthogonalLeastSquares, Kernel, MultiOutputRvm, NystromRidge, PilotSample, Ridge, Stop,
-    SufficientStatistics, Bandwidth, random_subset,
+    AgarwalTriggs, Bandwidth, BasisSpec, Fit, Kernel, MultiOutputRvm, NystromRidge,
+    OrthogonalLeastSquares, PilotSample, Ridge, Stop, SufficientStatistics, random_subset,
 };
 
 use crate::described::Samples;
@@ -28,7 +28,7 @@ const SAMPLES: usize = 3000;
 const KEPT: [usize; 3] = [40, 100, 300];
 const TESTS: [Test; 2] = [Test::Unseen, Test::All];
 /// Width of every method's kernels, as suits few among many inputs.
-const WIDTH: Bandwidth = Bandwidth::Scatter(0.3);
+const WIDTH: Bandwidth = Bandwidth::Relative(0.3);
 const KERNEL: Kernel = Kernel::Gaussian(WIDTH);
 /// Penalty on the weights where the method does not choose its own: it only keeps nearly dependent
 /// columns apart.
@@ -67,21 +67,27 @@ impl Selector {
     fn fit(self, samples: &Samples, count: usize) -> Result<Fit> {
         let (x, y) = (samples.x.as_ref(), samples.y.as_ref());
         Ok(match self {
-            Self::Bridges => {
-                AgarwalTriggs { kernel: KERNEL, stop: Stop::Count(count), ..AgarwalTriggs::default() }
-                    .fit(x, y)?
+            Self::Bridges => AgarwalTriggs {
+                kernel: KERNEL,
+                stop: Stop::Count(count),
+                ..AgarwalTriggs::default()
             }
+            .fit(x, y)?,
             Self::Random => on_random_samples(samples, count)?,
             Self::Forward => {
-                OrthogonalLeastSquares { kernel: KERNEL, count, lambda: LAMBDA, sweeps: 0 }.fit(x, y)?
-            }
-            Self::MultivariateRvm => {
-                MultiOutputRvm { kernel: KERNEL, most: Some(count), ..MultiOutputRvm::default() }
+                OrthogonalLeastSquares { kernel: KERNEL, count, lambda: LAMBDA, sweeps: 0 }
                     .fit(x, y)?
             }
+            Self::MultivariateRvm => MultiOutputRvm {
+                kernel: KERNEL,
+                max_columns: Some(count),
+                ..MultiOutputRvm::default()
+            }
+            .fit(x, y)?,
             Self::Nystrom => {
                 let centres = random_subset(x.ncols(), count, SEED);
-                NystromRidge { width: WIDTH, ..NystromRidge::default() }.fit_on(x, y, &centres)?
+                NystromRidge { bandwidth: WIDTH, ..NystromRidge::default() }
+                    .fit_on(x, y, &centres)?
             }
         })
     }

@@ -11,7 +11,7 @@ use phalanx::{
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_render::{Appearance, Renderer};
-use phalanx_rvm::{TwoStageSelection, Stop};
+use phalanx_rvm::{Stop, TwoStageSelection};
 use phalanx_segmentation::SkinModel;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;

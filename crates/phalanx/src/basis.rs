@@ -139,7 +139,7 @@ impl Basis {
                     let y = metric.targets(group, y);
                     let x = metric.part(group, x);
                     let pilot = PilotSample { x, y: y.as_ref(), samples: &self.pilot };
-                    Ok(BasisSpec::in_proportion(&pilot, fitter.regression.width)?)
+                    Ok(BasisSpec::in_proportion(&pilot, fitter.regression.bandwidth)?)
                 };
                 (0..metric.groups.len()).into_par_iter().map(of_group).collect()
             }

@@ -200,9 +200,11 @@ impl Gathered {
 }
 
 fn fit_sums(sums: &[SufficientStatistics], basis: &Basis) -> Result<Regression> {
-    let work: Vec<(BasisSpec, &SufficientStatistics)> = basis.columns()?.into_iter().zip(sums).collect();
-    let fit =
-        |(columns, sums): &(BasisSpec, &SufficientStatistics)| Ok(basis.regressor.fit_sums(columns, sums)?.model);
+    let work: Vec<(BasisSpec, &SufficientStatistics)> =
+        basis.columns()?.into_iter().zip(sums).collect();
+    let fit = |(columns, sums): &(BasisSpec, &SufficientStatistics)| {
+        Ok(basis.regressor.fit_sums(columns, sums)?.model)
+    };
     let mut models = work.par_iter().map(fit).collect::<Result<Vec<_>>>()?;
     Ok(match &basis.reading {
         Reading::Metric(metric) => GroupedRegressor::from_parts(metric.clone(), models)?.into(),

@@ -4,9 +4,7 @@ use std::borrow::Cow;
 
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
-use phalanx_rvm::{
-    ResidualKde, ResidualKdeParts, Model, ModelParts, PcaMlp, GroupedRegressor,
-};
+use phalanx_rvm::{GroupedRegressor, Model, ModelParts, PcaMlp, ResidualKde, ResidualKdeParts};
 use serde::{Deserialize, Serialize};
 
 use crate::container::Container;
@@ -67,9 +65,7 @@ impl Estimator {
         let (rig, hand) = (rig.into_owned(), hand.into_owned());
         let estimator = Self::from_parts(rig, hand, descriptor.into_owned(), regression)?;
         match errors {
-            Some(parts) => {
-                estimator.with_errors(ResidualKde::from_parts(parts.into_owned())?)
-            }
+            Some(parts) => estimator.with_errors(ResidualKde::from_parts(parts.into_owned())?),
             None => Ok(estimator),
         }
     }

@@ -2,7 +2,10 @@
 
 use phalanx_codebook::KMeans;
 use phalanx_multiview::Vocabulary;
-use phalanx_rvm::{PredictiveDeviation, ExpectedGradientOuterProduct, NystromRidge, NystromRegularisation, MlpTrainer, Bandwidth};
+use phalanx_rvm::{
+    Bandwidth, ExpectedGradientOuterProduct, MlpTrainer, NystromRegularisation, NystromRidge,
+    PredictiveDeviation,
+};
 
 use crate::{
     Description, Framing, LearntMetric, NetworkTraining, OrientationRule, Regressor, Training,
@@ -37,9 +40,9 @@ impl Preset {
     /// damaged ones, as many as [`scenes`](Self::scenes) says.
     pub fn training(self) -> Training {
         let regression = |width, penalties: &[f64]| NystromRidge {
-            width: Bandwidth::Scatter(width),
-            deviation: PredictiveDeviation::CrossValidated,
-            penalty: NystromRegularisation::CrossValidated(penalties.to_vec()),
+            bandwidth: Bandwidth::Relative(width),
+            deviation: PredictiveDeviation::Gcv,
+            regularisation: NystromRegularisation::Gcv(penalties.to_vec()),
         };
         let regressor = match self {
             Self::Fast => Regressor::LearntMetric(LearntMetric {

@@ -1,6 +1,6 @@
 //! The fitted regressor of an estimator.
 use phalanx_rvm::Regressor as _;
-use phalanx_rvm::{Model, PcaMlp, GroupedRegressor, Scratch};
+use phalanx_rvm::{GroupedRegressor, Model, PcaMlp, Scratch};
 
 /// A fitted regressor from descriptors to poses.
 #[derive(Debug, Clone, PartialEq)]

@@ -287,7 +287,7 @@ impl Regressor {
         if let Self::Cascade(fitter) = self {
             let linear = BasisSpec::new(&pilot, Kernel::Linear)?;
             let first = fitter.fit_features(&linear, &sums(&linear, x, y)?)?;
-            let kernel = Kernel::Gaussian(fitter.width);
+            let kernel = Kernel::Gaussian(fitter.bandwidth);
             let gaussian = BasisSpec::over(&pilot, kernel, first.model.selected_features())?;
             return Ok(fitter.fit_samples(first, &gaussian, &sums(&gaussian, x, y)?)?);
         }
@@ -297,7 +297,11 @@ impl Regressor {
     }
 }
 
-fn sums(columns: &BasisSpec, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<SufficientStatistics> {
+fn sums(
+    columns: &BasisSpec,
+    x: MatRef<'_, f64>,
+    y: MatRef<'_, f64>,
+) -> Result<SufficientStatistics> {
     let mut sums = SufficientStatistics::new(columns);
     for start in (0..x.ncols()).step_by(BATCH) {
         let width = BATCH.min(x.ncols() - start);

@@ -4,7 +4,7 @@ use faer::Mat;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_multiview::{Codes, Concatenation, Scratch, Vocabulary};
-use phalanx_rvm::{KernelRidge, Regularisation, Bandwidth};
+use phalanx_rvm::{Bandwidth, KernelRidge, Regularisation};
 use rayon::prelude::*;
 
 use crate::{
@@ -50,8 +50,8 @@ impl Default for Training {
             vocabulary: Vocabulary::default(),
             description: Description::Counts,
             regressor: Regressor::KernelRidge(KernelRidge {
-                width: Bandwidth::Scatter(0.5),
-                lambda: Regularisation::Given(0.01),
+                bandwidth: Bandwidth::Relative(0.5),
+                regularisation: Regularisation::Fixed(0.01),
             }),
         }
     }

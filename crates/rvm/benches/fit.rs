@@ -5,7 +5,8 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use faer::Mat;
 use phalanx_rvm::{
-    AgarwalTriggs, OrthogonalLeastSquares, Kernel, KernelRidge, Regressor, Scratch, Stop, RelevanceVectorMachine, Bandwidth,
+    AgarwalTriggs, Bandwidth, Kernel, KernelRidge, OrthogonalLeastSquares, Regressor,
+    RelevanceVectorMachine, Scratch, Stop,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -40,7 +41,7 @@ fn data() -> (Mat<f64>, Mat<f64>) {
 fn fits(c: &mut Criterion) {
     let (x, y) = data();
     let (x, y) = (x.as_ref(), y.as_ref());
-    let gaussian = Kernel::Gaussian(Bandwidth::Scatter(0.3));
+    let gaussian = Kernel::Gaussian(Bandwidth::Relative(0.3));
     let mut group = c.benchmark_group("fit 837x90 to 24");
     group.sample_size(10);
     for (name, kernel) in [("linear", Kernel::Linear), ("gaussian", gaussian)] {
@@ -49,11 +50,13 @@ fn fits(c: &mut Criterion) {
             b.iter(|| bridges.fit(black_box(x), y).unwrap());
         });
     }
-    let forward = OrthogonalLeastSquares { kernel: gaussian, count: 40, ..OrthogonalLeastSquares::default() };
+    let forward =
+        OrthogonalLeastSquares { kernel: gaussian, count: 40, ..OrthogonalLeastSquares::default() };
     group.bench_function("forward gaussian to 40", |b| {
         b.iter(|| forward.fit(black_box(x), y).unwrap());
     });
-    let tipping = RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() };
+    let tipping =
+        RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() };
     group.bench_function("Tipping linear", |b| {
         b.iter(|| tipping.fit(black_box(x), y).unwrap());
     });
@@ -67,7 +70,7 @@ fn fits(c: &mut Criterion) {
 fn predictions(c: &mut Criterion) {
     let (x, y) = data();
     let features = x.as_ref().subrows(0, 32);
-    let kernel = Kernel::Gaussian(Bandwidth::Scatter(0.3));
+    let kernel = Kernel::Gaussian(Bandwidth::Relative(0.3));
     let forward = OrthogonalLeastSquares { kernel, count: 38, ..OrthogonalLeastSquares::default() };
     let sparse = forward.fit(features, y.as_ref()).unwrap().model;
     let dense = KernelRidge::default().fit(x.as_ref(), y.as_ref()).unwrap().model;

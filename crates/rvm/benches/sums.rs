@@ -4,7 +4,10 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use faer::Mat;
-use phalanx_rvm::{AgarwalTriggs, BasisSpec, OrthogonalLeastSquares, Kernel, NystromRidge, PilotSample, Stop, SufficientStatistics, Bandwidth};
+use phalanx_rvm::{
+    AgarwalTriggs, Bandwidth, BasisSpec, Kernel, NystromRidge, OrthogonalLeastSquares, PilotSample,
+    Stop, SufficientStatistics,
+};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -13,7 +16,7 @@ const COLUMNS: usize = 1000;
 const BLOCK: usize = 512;
 const INPUTS: usize = 90;
 const TARGETS: usize = 28;
-const WIDTH: Bandwidth = Bandwidth::Scatter(0.3);
+const WIDTH: Bandwidth = Bandwidth::Relative(0.3);
 
 /// Histogram-like inputs, and targets that are smooth functions of them.
 fn data(samples: usize) -> (Mat<f64>, Mat<f64>) {
@@ -46,7 +49,7 @@ fn sums(c: &mut Criterion) {
     group.bench_function("add a block of 512", |b| {
         b.iter(|| more.add(&columns, black_box(bx), by).unwrap());
     });
-    let nystrom = NystromRidge { width: WIDTH, ..NystromRidge::default() };
+    let nystrom = NystromRidge { bandwidth: WIDTH, ..NystromRidge::default() };
     group.bench_function("Nyström, 6 lambdas", |b| {
         b.iter(|| nystrom.fit_sums(&columns, black_box(&sums)).unwrap());
     });

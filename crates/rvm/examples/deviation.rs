@@ -4,7 +4,7 @@
 //!     cargo run --release -p phalanx-rvm --example deviation > crates/rvm/deviation.svg
 
 use phalanx_rvm::faer::Mat;
-use phalanx_rvm::{AugmentedRvm, ArdRvm, Regressor, Result};
+use phalanx_rvm::{ArdRvm, AugmentedRvm, Regressor, Result};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 

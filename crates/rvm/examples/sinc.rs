@@ -5,7 +5,8 @@
 
 use phalanx_rvm::faer::Mat;
 use phalanx_rvm::{
-    AgarwalTriggs, Fit, OrthogonalLeastSquares, Kernel, KernelRidge, Regressor, Result, RelevanceVectorMachine, Bandwidth,
+    AgarwalTriggs, Bandwidth, Fit, Kernel, KernelRidge, OrthogonalLeastSquares, Regressor,
+    RelevanceVectorMachine, Result,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -26,16 +27,20 @@ fn main() -> Result<()> {
     });
     let (x, y) = (x.as_ref(), y.as_ref());
 
-    let width = Bandwidth::Scatter(7.0);
+    let width = Bandwidth::Relative(7.0);
     let kernel = Kernel::Gaussian(width);
-    show("Tipping", &RelevanceVectorMachine { kernel, ..RelevanceVectorMachine::default() }.fit(x, y)?)?;
+    show(
+        "Tipping",
+        &RelevanceVectorMachine { kernel, ..RelevanceVectorMachine::default() }.fit(x, y)?,
+    )?;
     // One target alone wants a gentler prior than many that agree.
     show("bridges", &AgarwalTriggs { kernel, nu: 0.03, ..AgarwalTriggs::default() }.fit(x, y)?)?;
     show(
         "forward",
-        &OrthogonalLeastSquares { kernel, count: 6, ..OrthogonalLeastSquares::default() }.fit(x, y)?,
+        &OrthogonalLeastSquares { kernel, count: 6, ..OrthogonalLeastSquares::default() }
+            .fit(x, y)?,
     )?;
-    show("kernel ridge", &KernelRidge { width, ..KernelRidge::default() }.fit(x, y)?)
+    show("kernel ridge", &KernelRidge { bandwidth: width, ..KernelRidge::default() }.fit(x, y)?)
 }
 
 fn show(name: &str, fit: &Fit) -> Result<()> {

@@ -3,8 +3,9 @@
 use anyhow::Result;
 use phalanx_rvm::faer::{Mat, MatRef};
 use phalanx_rvm::{
-    FeatureBlock, AgarwalTriggs, BasisSpec, OrthogonalLeastSquares, ExpectedGradientOuterProduct, Kernel, Model, MultiOutputRvm,
-    NystromRidge, PilotSample, AffineMap, Stop, SufficientStatistics, Bandwidth,
+    AffineMap, AgarwalTriggs, Bandwidth, BasisSpec, ExpectedGradientOuterProduct, FeatureBlock,
+    Kernel, Model, MultiOutputRvm, NystromRidge, OrthogonalLeastSquares, PilotSample, Stop,
+    SufficientStatistics,
 };
 
 use super::clock::{middle, timed};
@@ -50,10 +51,10 @@ pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
     let shared =
         measure(&problem, || as_given(&problem, width, |c, s| Ok(rvm.fit_sums(c, s)?.model)))?;
     let few = measure(&problem, || as_given(&problem, width, |c, s| forward(c, s, width)))?;
-    let wide = Bandwidth::Scatter(3.0);
+    let wide = Bandwidth::Relative(3.0);
     let learnt = measure(&problem, || by_distance(&problem, wide, |c, s| forward(c, s, wide)))?;
-    let wider = Bandwidth::Scatter(4.0);
-    let dense = NystromRidge { width: wider, ..NystromRidge::default() };
+    let wider = Bandwidth::Relative(4.0);
+    let dense = NystromRidge { bandwidth: wider, ..NystromRidge::default() };
     let all =
         measure(&problem, || by_distance(&problem, wider, |c, s| Ok(dense.fit_sums(c, s)?.model)))?;
     let few_vectors = Target::AtMost(MOST as f64);
@@ -96,9 +97,10 @@ pub(crate) fn rows(peers: &Peers) -> Result<Vec<Row>> {
         target: Target::Open,
     });
     let (x, y) = (problem.x.as_ref(), problem.y.as_ref());
-    let gaussian = Kernel::Gaussian(Bandwidth::Scatter(0.3));
+    let gaussian = Kernel::Gaussian(Bandwidth::Relative(0.3));
     for (name, kernel) in [("linear", Kernel::Linear), ("Gaussian", gaussian)] {
-        let bridges = AgarwalTriggs { kernel, stop: Stop::Count(COUNT), ..AgarwalTriggs::default() };
+        let bridges =
+            AgarwalTriggs { kernel, stop: Stop::Count(COUNT), ..AgarwalTriggs::default() };
         let fit = || Ok(Made { projection: None, model: bridges.fit(x, y)?.model });
         let ours = measure(&problem, fit)?;
         let row = |figure, unit, ours, target| Row {
@@ -123,7 +125,7 @@ fn width(problem: &Problem) -> Bandwidth {
     let count = (x.nrows() * x.ncols()) as f64;
     let mean = x.sum() / count;
     let variance = x.squared_norm_l2() / count - mean * mean;
-    Bandwidth::Beta(problem.variance() / (x.nrows() as f64 * variance))
+    Bandwidth::Gamma(problem.variance() / (x.nrows() as f64 * variance))
 }
 
 /// A fit to inputs that keep their proportions, as the peers'.
@@ -142,8 +144,15 @@ fn by_distance(
     fit: impl Fn(&BasisSpec, &SufficientStatistics) -> phalanx_rvm::Result<Model>,
 ) -> phalanx_rvm::Result<Made> {
     let (x, y) = (problem.x.as_ref(), problem.y.as_ref());
-    let regression = NystromRidge { width: Bandwidth::Scatter(1.7), ..NystromRidge::default() };
-    let learning = ExpectedGradientOuterProduct { regression, rounds: 1, centres: 400, gradients: 400, rank: 40 };
+    let regression =
+        NystromRidge { bandwidth: Bandwidth::Relative(1.7), ..NystromRidge::default() };
+    let learning = ExpectedGradientOuterProduct {
+        regression,
+        rounds: 1,
+        centres: 400,
+        gradients: 400,
+        rank: 40,
+    };
     let block = FeatureBlock { inputs: x.nrows(), components: 60 };
     let all = vec![(0..y.nrows()).collect()];
     let projection = learning.fit(x, y, &[block], &all)?.projection;
@@ -166,8 +175,13 @@ fn in_proportion(
     fit(&columns, &sums)
 }
 
-fn forward(columns: &BasisSpec, sums: &SufficientStatistics, width: Bandwidth) -> phalanx_rvm::Result<Model> {
-    let chosen = OrthogonalLeastSquares { count: MOST, lambda: LAMBDA, ..OrthogonalLeastSquares::default() };
+fn forward(
+    columns: &BasisSpec,
+    sums: &SufficientStatistics,
+    width: Bandwidth,
+) -> phalanx_rvm::Result<Model> {
+    let chosen =
+        OrthogonalLeastSquares { count: MOST, lambda: LAMBDA, ..OrthogonalLeastSquares::default() };
     let chosen = OrthogonalLeastSquares { kernel: Kernel::Gaussian(width), ..chosen };
     Ok(chosen.fit_sums(columns, sums)?.model)
 }

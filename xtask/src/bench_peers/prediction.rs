@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use phalanx_rvm::faer::Mat;
-use phalanx_rvm::{OrthogonalLeastSquares, Kernel, Model, Scratch, Bandwidth};
+use phalanx_rvm::{Bandwidth, Kernel, Model, OrthogonalLeastSquares, Scratch};
 
 use super::clock::{each, median};
 use super::peers::Peers;
@@ -42,8 +42,9 @@ fn model() -> Result<(Model, Vec<f64>)> {
     let wave = |i: usize, t: usize| (0.37 * ((i + 1) * (t + 3)) as f64).sin();
     let x = Mat::from_fn(INPUTS, 4 * CENTRES, wave);
     let y = Mat::from_fn(OUTPUTS, 4 * CENTRES, |j, t| wave(j, t) * wave(j + 1, t));
-    let kernel = Kernel::Gaussian(Bandwidth::Scatter(1.0));
-    let selection = OrthogonalLeastSquares { kernel, count: CENTRES, ..OrthogonalLeastSquares::default() };
+    let kernel = Kernel::Gaussian(Bandwidth::Relative(1.0));
+    let selection =
+        OrthogonalLeastSquares { kernel, count: CENTRES, ..OrthogonalLeastSquares::default() };
     let model = selection.fit(x.as_ref(), y.as_ref())?.model;
     Ok((model, x.col_as_slice(0).to_vec()))
 }

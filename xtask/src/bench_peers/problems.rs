@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use phalanx_rvm::{Kernel, RelevanceVectorMachine, Bandwidth};
+use phalanx_rvm::{Bandwidth, Kernel, RelevanceVectorMachine};
 
 use super::clock::{middle, timed};
 use super::data::Problem;
@@ -102,7 +102,7 @@ fn fit_theirs(name: &str, gamma: f64, fastrvm: &mut Result<Conversation>) -> Res
 
 fn fit_ours(problem: &Problem, gamma: f64) -> Result<Outcome> {
     // Ours sees standardised inputs, among which γ is as many times larger as distances are.
-    let kernel = Kernel::Gaussian(Bandwidth::Beta(gamma * problem.variance()));
+    let kernel = Kernel::Gaussian(Bandwidth::Gamma(gamma * problem.variance()));
     let tipping = RelevanceVectorMachine { kernel, ..RelevanceVectorMachine::default() };
     let (seconds, fit) = timed(|| tipping.fit(problem.x.as_ref(), problem.y.as_ref()))?;
     let prediction = fit.model.predict(problem.test_x.as_ref())?;

@@ -143,7 +143,11 @@ fn select(
     split: u64,
 ) -> Result<Selection> {
     let halves = described.halves(views, split)?;
-    let bridges = AgarwalTriggs { kernel: Kernel::Linear, stop: Stop::Count(keep), ..AgarwalTriggs::default() };
+    let bridges = AgarwalTriggs {
+        kernel: Kernel::Linear,
+        stop: Stop::Count(keep),
+        ..AgarwalTriggs::default()
+    };
     let fit = bridges.fit(halves.train.x.as_ref(), halves.train.y.as_ref())?;
     let codebooks = halves.codebooks.codebooks();
     let voting = halves.codebooks.voting();

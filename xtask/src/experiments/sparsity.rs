@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use phalanx_hand::{Digit, Dof};
 use phalanx_rvm::Regressor as _;
-use phalanx_rvm::{AgarwalTriggs, Kernel, Model, Stop, RelevanceVectorMachine};
+use phalanx_rvm::{AgarwalTriggs, Kernel, Model, RelevanceVectorMachine, Stop};
 use rayon::prelude::*;
 use serde_json::json;
 
@@ -18,7 +18,7 @@ pub(crate) const EXPERIMENT: Experiment = Experiment {
     place: "Fig. 5",
     title: "the non-zero elements of A",
     claim: "with linear columns on open-close and errors on the training set, ten features that all \
-            outputs share (5 + 3 + 2 by camera) serve no worse than RelevanceVectorMachine's selection for every \
+            outputs share (5 + 3 + 2 by camera) serve no worse than Tipping's selection for every \
             output by itself (2.7 ± 2.0°, worst 11.8 ± 8.2°, against 2.8 ± 2.4°, worst 34.0 ± 28.8°, \
             both the thumb's IP), and many of the features that the two select coincide.",
     run,
@@ -70,9 +70,9 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
     Ok(Finding {
         verdict: Verdict::of(&claims),
         sentence: format!(
-            "Ten shared features leave {columns:.2}° on the training set where RelevanceVectorMachine's {:.0} \
+            "Ten shared features leave {columns:.2}° on the training set where Tipping's {:.0} \
              elements leave {tipping:.2}°; {:.1} of the ten are among the ten features that most \
-             of RelevanceVectorMachine's outputs keep, where chance would have {:.1}.",
+             of Tipping's outputs keep, where chance would have {:.1}.",
             mean(&trials, |t| count(&t.tipping.cells) as f64),
             shared.among_most_kept,
             shared.by_chance,
@@ -81,7 +81,7 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
         tables: vec![errors, shared_table(&[("", &shared), (", noise assumed", &noisy_shared)])],
         figures: vec![
             Figure::cells(
-                "RelevanceVectorMachine's selection for every output by itself. Of each digit, from the top: \
+                "Tipping's selection for every output by itself. Of each digit, from the top: \
                  abduction and three flexions.",
                 &map(&first.tipping, &cameras),
             )?,
@@ -105,7 +105,11 @@ fn trial(described: &Described, views: &[usize], seed: u64) -> Result<Trial> {
     let active = &described.active;
     let (x, y) = (samples.x.as_ref(), samples.y.as_ref());
     let tipping = |name, noise_floor| {
-        let tipping = RelevanceVectorMachine { kernel: Kernel::Linear, noise_floor, ..RelevanceVectorMachine::default() };
+        let tipping = RelevanceVectorMachine {
+            kernel: Kernel::Linear,
+            noise_floor,
+            ..RelevanceVectorMachine::default()
+        };
         Fitted::new(name, &tipping.fit(x, y)?.model, &samples, active)
     };
     let bridges = |name, columns| {
@@ -117,7 +121,10 @@ fn trial(described: &Described, views: &[usize], seed: u64) -> Result<Trial> {
         let columns = (count(&of.cells) as f64 / active.len() as f64).round() as usize;
         bridges("column-wise, as many elements", columns.max(1))
     };
-    let noiseless = tipping("RelevanceVectorMachine, per output", RelevanceVectorMachine::default().noise_floor)?;
+    let noiseless = tipping(
+        "RelevanceVectorMachine, per output",
+        RelevanceVectorMachine::default().noise_floor,
+    )?;
     let noisy = tipping("RelevanceVectorMachine, 1 % noise assumed", NOISE_SHARE)?;
     let guesses = mean_predictor(&samples.y, y.ncols());
     Ok(Trial {
@@ -228,22 +235,22 @@ impl Shared {
 /// The figures of each of Tipping's selections beside what chance would give.
 fn shared_table(selections: &[(&str, &Shared)]) -> Table {
     let mut table = Table::new(
-        "How far RelevanceVectorMachine's selections and the ten column-wise features coincide.",
+        "How far Tipping's selections and the ten column-wise features coincide.",
         ["of the ten column-wise features", "found", "by chance"],
     );
     for (which, shared) in selections {
         table.row([
-            format!("kept by some output of RelevanceVectorMachine's{which}"),
+            format!("kept by some output of Tipping's{which}"),
             format!("{:.1}", shared.kept_by_some),
             format!("{:.1}", shared.some_by_chance),
         ]);
         table.row([
-            format!("share of RelevanceVectorMachine's outputs that keep one{which}"),
+            format!("share of Tipping's outputs that keep one{which}"),
             format!("{:.0} %", 100.0 * shared.density_in_ten),
             format!("{:.0} %", 100.0 * shared.density),
         ]);
         table.row([
-            format!("among the ten that most of RelevanceVectorMachine's outputs keep{which}"),
+            format!("among the ten that most of Tipping's outputs keep{which}"),
             format!("{:.1}", shared.among_most_kept),
             format!("{:.1} ± {:.1}", shared.by_chance, shared.chance_deviation),
         ]);
@@ -275,7 +282,7 @@ fn notes(trials: &[Trial]) -> Result<Vec<String>> {
         ),
         format!(
             "With as many elements as RelevanceVectorMachine keeps, the column-wise error is {:.2}° \
-             where RelevanceVectorMachine's is {:.2}°, and {:.2}° where it is \
+             where Tipping's is {:.2}°, and {:.2}° where it is \
              {:.2}° with noise assumed.",
             mae(trials, |t| &t.as_many),
             mae(trials, |t| &t.tipping),

@@ -1,7 +1,7 @@
 //! Fig. 6: how many vectors survive a threshold.
 
 use anyhow::{Context, Result};
-use phalanx_rvm::{AgarwalTriggs, Kernel, Stop, Bandwidth};
+use phalanx_rvm::{AgarwalTriggs, Bandwidth, Kernel, Stop};
 use rayon::prelude::*;
 use serde_json::json;
 
@@ -23,8 +23,10 @@ const SPLITS: u64 = 5;
 /// Thresholds a decade, and decades from the lowest: the columns' norms follow from the kernel.
 const PER_DECADE: i32 = 4;
 const DECADES: i32 = 3;
-const KERNELS: [(&str, Kernel, f64); 2] =
-    [("linear", Kernel::Linear, 0.01), ("Gaussian", Kernel::Gaussian(Bandwidth::Scatter(1.0)), 0.1)];
+const KERNELS: [(&str, Kernel, f64); 2] = [
+    ("linear", Kernel::Linear, 0.01),
+    ("Gaussian", Kernel::Gaussian(Bandwidth::Relative(1.0)), 0.1),
+];
 /// The priors compared; the first is drawn. ν bounds what survives at any threshold: only with a
 /// weak one does the threshold decide over all of the columns.
 const NU: [f64; 3] = [1e-6, 1e-4, 1e-2];
@@ -62,7 +64,8 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
             .collect();
         for nu in NU {
             // How many survive is settled long before the weights are.
-            let bridges = AgarwalTriggs { kernel, nu, max_iterations: 300, ..AgarwalTriggs::default() };
+            let bridges =
+                AgarwalTriggs { kernel, nu, max_iterations: 300, ..AgarwalTriggs::default() };
             let one = kept(&one, bridges, &thresholds)?;
             let three = kept(&three, bridges, &thresholds)?;
             curves.push(Curves::new(name, nu, thresholds.clone(), &one, &three));

@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use faer::{Mat, MatRef};
 use phalanx::{Preset, Regressor};
-use phalanx_rvm::{KernelRidge, Model, NystromRidge, Bandwidth};
+use phalanx_rvm::{Bandwidth, KernelRidge, Model, NystromRidge};
 
 use super::presets::Answer;
 use crate::described::Samples;
@@ -109,13 +109,13 @@ impl Method {
 
 /// Width of the kernels of `kernel`: wider than leave-one-out would have them, to which the
 /// neighbours in a sample's own sequence are near.
-const WIDTH: Bandwidth = Bandwidth::Scatter(0.5);
+const WIDTH: Bandwidth = Bandwidth::Relative(0.5);
 
 /// Gaussian kernel regression with a kernel on each of so many samples or, of more than
 /// [`Regressor::CANDIDATES`], on as many of them.
 fn kernel_regression(samples: usize) -> Regressor {
     if samples <= Regressor::CANDIDATES {
-        Regressor::KernelRidge(KernelRidge { width: WIDTH, ..KernelRidge::default() })
+        Regressor::KernelRidge(KernelRidge { bandwidth: WIDTH, ..KernelRidge::default() })
     } else {
         nystrom()
     }
@@ -123,7 +123,7 @@ fn kernel_regression(samples: usize) -> Regressor {
 
 /// Gaussian kernel regression on many samples.
 pub(crate) fn nystrom() -> Regressor {
-    Regressor::Nystrom(NystromRidge { width: WIDTH, ..NystromRidge::default() })
+    Regressor::Nystrom(NystromRidge { bandwidth: WIDTH, ..NystromRidge::default() })
 }
 
 impl Predictor {

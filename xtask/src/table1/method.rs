@@ -2,7 +2,10 @@
 
 use clap::ValueEnum;
 use phalanx::Regressor;
-use phalanx_rvm::{AgarwalTriggs, TwoStageSelection, OrthogonalLeastSquares, Kernel, KernelRidge, Stop, RelevanceVectorMachine};
+use phalanx_rvm::{
+    AgarwalTriggs, Kernel, KernelRidge, OrthogonalLeastSquares, RelevanceVectorMachine, Stop,
+    TwoStageSelection,
+};
 
 /// How many columns each of the paper's methods keeps.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -100,9 +103,10 @@ impl Method {
                 count: counts.gauss_samples,
                 ..OrthogonalLeastSquares::default()
             }),
-            Self::TippingLin => {
-                Regressor::Tipping(RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() })
-            }
+            Self::TippingLin => Regressor::Tipping(RelevanceVectorMachine {
+                kernel: Kernel::Linear,
+                ..RelevanceVectorMachine::default()
+            }),
             Self::KernelRidge => Regressor::KernelRidge(KernelRidge::default()),
             Self::Knn5 => return None,
         })

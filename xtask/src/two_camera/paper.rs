@@ -14,7 +14,7 @@ use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 use phalanx_refine::Refinement;
 use phalanx_render::Renderer;
-use phalanx_rvm::{TwoStageSelection, Stop};
+use phalanx_rvm::{Stop, TwoStageSelection};
 use rayon::prelude::*;
 
 use super::{Look, Seen, sheet};

@@ -5,7 +5,10 @@ use std::sync::Mutex;
 use phalanx::{Error, OrientationRule, Progress, Regressor, Silent, Training};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, Side};
-use phalanx_rvm::{AgarwalTriggs, TwoStageSelection, OrthogonalLeastSquares, Kernel, Ridge, Stop, RelevanceVectorMachine};
+use phalanx_rvm::{
+    AgarwalTriggs, Kernel, OrthogonalLeastSquares, RelevanceVectorMachine, Ridge, Stop,
+    TwoStageSelection,
+};
 
 use crate::desk::{ESTIMATOR, difference_deg, estimate, masks, poses, rig, top, training, unseen};
 
@@ -37,8 +40,14 @@ fn every_regressor_learns() {
             samples: Stop::Count(20),
             ..TwoStageSelection::default()
         }),
-        Regressor::Forward(OrthogonalLeastSquares { count: 20, ..OrthogonalLeastSquares::default() }),
-        Regressor::Tipping(RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() }),
+        Regressor::Forward(OrthogonalLeastSquares {
+            count: 20,
+            ..OrthogonalLeastSquares::default()
+        }),
+        Regressor::Tipping(RelevanceVectorMachine {
+            kernel: Kernel::Linear,
+            ..RelevanceVectorMachine::default()
+        }),
     ];
     for regressor in regressors {
         let name = format!("{regressor:?}");

@@ -29,27 +29,27 @@ pub enum Bandwidth {
     /// From the scatter matrix of the training inputs: |β| = c / (2 tr cov), where tr cov is the
     /// number of inputs that vary. c > 0; about 0.3 suits few centres among many inputs, 1 to 3
     /// all centres; one or two inputs want 5 to 10.
-    Scatter(f64),
+    Relative(f64),
     /// β itself, or its magnitude: the paper prints e^{β‖·‖²} with β negative, most libraries
     /// γ = −β, and either is taken. Not zero.
-    Beta(f64),
+    Gamma(f64),
 }
 
 impl Bandwidth {
     /// |β| for standardised inputs of which `varying` vary.
     pub(crate) fn magnitude(self, varying: usize) -> f64 {
         match self {
-            Self::Scatter(c) => c / (2.0 * varying.max(1) as f64),
-            Self::Beta(beta) => beta.abs(),
+            Self::Relative(c) => c / (2.0 * varying.max(1) as f64),
+            Self::Gamma(gamma) => gamma.abs(),
         }
     }
 
     pub(crate) fn check(self) -> Result<()> {
         match self {
-            Self::Scatter(c) => check::positive("c", c),
-            Self::Beta(beta) if beta != 0.0 && beta.is_finite() => Ok(()),
-            Self::Beta(value) => {
-                Err(Error::Parameter { name: "beta", value, requirement: "finite and not zero" })
+            Self::Relative(c) => check::positive("c", c),
+            Self::Gamma(gamma) if gamma != 0.0 && gamma.is_finite() => Ok(()),
+            Self::Gamma(value) => {
+                Err(Error::Parameter { name: "gamma", value, requirement: "finite and not zero" })
             }
         }
     }
@@ -59,7 +59,7 @@ impl Kernel {
     pub(crate) fn check(self) -> Result<()> {
         match self {
             Self::Linear => Ok(()),
-            Self::Gaussian(width) => width.check(),
+            Self::Gaussian(bandwidth) => bandwidth.check(),
         }
     }
 

@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 
 use crate::basis::gaussians::Gaussians;
-use crate::basis::kernel::{self, Kernel, Bandwidth};
+use crate::basis::kernel::{self, Bandwidth, Kernel};
 use crate::data::check;
 use crate::data::problem::Problem;
 use crate::data::scaler::StandardScaler;
@@ -57,9 +57,9 @@ impl BasisSpec {
 
     /// A Gaussian on each sample of the pilot, over inputs whose proportions mean something, such as
     /// those of a learnt [`LearnedMetric`](crate::LearnedMetric): all are divided by one number.
-    pub fn in_proportion(pilot: &PilotSample<'_>, width: Bandwidth) -> Result<Self> {
+    pub fn in_proportion(pilot: &PilotSample<'_>, bandwidth: Bandwidth) -> Result<Self> {
         let problem = Problem::in_proportion(pilot.x, pilot.y)?;
-        Self::on_pilot(&problem, problem.features(), Kernel::Gaussian(width), pilot)
+        Self::on_pilot(&problem, problem.features(), Kernel::Gaussian(bandwidth), pilot)
     }
 
     /// Columns over the inputs in `features` (ascending) that vary.
@@ -100,8 +100,8 @@ impl BasisSpec {
             _ => features.len(),
         })?;
         let gaussians = match kernel {
-            Kernel::Gaussian(width) if !features.is_empty() => Some(Gaussians {
-                beta: width.magnitude(features.len()),
+            Kernel::Gaussian(bandwidth) if !features.is_empty() => Some(Gaussians {
+                beta: bandwidth.magnitude(features.len()),
                 samples: centres.to_vec(),
                 centres: Mat::from_fn(features.len(), size, |i, k| {
                     problem.z[(features[i], centres[k])]

@@ -78,7 +78,12 @@ impl Pass {
     pub(super) const SAMPLES: usize = 128;
 
     /// Takes samples, one after the other, through all layers.
-    pub(super) fn forward(&mut self, layers: &Layers, x: Vec<f32>, mut left_out: Option<DropoutMask>) {
+    pub(super) fn forward(
+        &mut self,
+        layers: &Layers,
+        x: Vec<f32>,
+        mut left_out: Option<DropoutMask>,
+    ) {
         self.samples = x.len() / layers.widths[0];
         self.values.resize_with(layers.count() + 1, Vec::new);
         self.steepness.resize_with(layers.count() - 1, Vec::new);

@@ -16,7 +16,7 @@ use crate::data::permutation::shuffle;
 use crate::data::scaler::StandardScaler;
 use crate::error::{Error, Result};
 use crate::mlp::adam::Adam;
-use crate::mlp::layers::{Layers, DropoutMask, Pass};
+use crate::mlp::layers::{DropoutMask, Layers, Pass};
 use crate::mlp::network::{Mlp, MlpParts};
 use crate::mlp::samples::{Samples, Scaling, check_inputs};
 use crate::model::report::{Fit, Report, Trace};

@@ -42,7 +42,7 @@ impl Model {
 
 #[cfg(test)]
 mod tests {
-    use crate::basis::kernel::{Kernel, Bandwidth};
+    use crate::basis::kernel::{Bandwidth, Kernel};
     use crate::ridge::Ridge;
     use crate::sparse::orthogonal_least_squares::OrthogonalLeastSquares;
 
@@ -60,7 +60,7 @@ mod tests {
     fn slopes_are_those_of_central_differences() {
         let (x, y) = data();
         let gaussian = OrthogonalLeastSquares {
-            kernel: Kernel::Gaussian(Bandwidth::Scatter(2.0)),
+            kernel: Kernel::Gaussian(Bandwidth::Relative(2.0)),
             count: 12,
             ..OrthogonalLeastSquares::default()
         };

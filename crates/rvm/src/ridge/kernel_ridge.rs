@@ -4,7 +4,7 @@ use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Bandwidth};
+use crate::basis::kernel::{Bandwidth, Kernel};
 use crate::basis::normal_equations;
 use crate::data::check;
 use crate::data::problem::Problem;
@@ -21,10 +21,10 @@ use crate::ridge::penalised::Penalised;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Regularisation {
     /// This λ > 0.
-    Given(f64),
+    Fixed(f64),
     /// Of these λ > 0, the one with the least squared leave-one-out error over all targets,
     /// standardised.
-    LeaveOneOut(Vec<f64>),
+    Loocv(Vec<f64>),
 }
 
 /// Dense kernel ridge regression with a Gaussian kernel on every sample and an unpenalised bias;
@@ -43,7 +43,7 @@ pub enum Regularisation {
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(1, 50, |_, t| t as f64 / 8.0);
 /// let y = Mat::from_fn(1, 50, |_, t| x[(0, t)].cos());
-/// let lambda = Regularisation::LeaveOneOut(vec![1e-6, 1e-3, 1.0]);
+/// let lambda = Regularisation::Loocv(vec![1e-6, 1e-3, 1.0]);
 /// let fit = KernelRidge { lambda, ..KernelRidge::default() }.fit(x.as_ref(), y.as_ref())?;
 /// assert_eq!(fit.report.penalty, Some(1e-6), "there is no noise to smooth away");
 /// assert_eq!(fit.model.kept_samples().len(), 50);
@@ -54,15 +54,15 @@ pub enum Regularisation {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct KernelRidge {
     /// Width of the kernel.
-    pub width: Bandwidth,
+    pub bandwidth: Bandwidth,
     /// Penalty.
-    pub lambda: Regularisation,
+    pub regularisation: Regularisation,
 }
 
 impl Default for KernelRidge {
     fn default() -> Self {
         let grid = (-5..=1).map(|e| 10_f64.powi(e)).collect();
-        Self { width: Bandwidth::Scatter(3.0), lambda: Regularisation::LeaveOneOut(grid) }
+        Self { bandwidth: Bandwidth::Relative(3.0), regularisation: Regularisation::Loocv(grid) }
     }
 }
 
@@ -71,7 +71,7 @@ impl KernelRidge {
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
         let grid = self.grid()?;
         let problem = Problem::new(x, y)?;
-        let design = Design::full(&problem, Kernel::Gaussian(self.width))?;
+        let design = Design::full(&problem, Kernel::Gaussian(self.bandwidth))?;
         let n = design.size();
         if n < 2 {
             return mean(&design, grid[0]);
@@ -101,14 +101,14 @@ impl KernelRidge {
     /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
         self.grid()?;
-        self.width.check()?;
-        Kernel::Gaussian(self.width).columns(size).map(drop)
+        self.bandwidth.check()?;
+        Kernel::Gaussian(self.bandwidth).columns(size).map(drop)
     }
 
     fn grid(&self) -> Result<&[f64]> {
-        let grid = match &self.lambda {
-            Regularisation::Given(lambda) => std::slice::from_ref(lambda),
-            Regularisation::LeaveOneOut(grid) => grid,
+        let grid = match &self.regularisation {
+            Regularisation::Fixed(lambda) => std::slice::from_ref(lambda),
+            Regularisation::Loocv(grid) => grid,
         };
         check::grid(grid)?;
         Ok(grid)

@@ -2,7 +2,7 @@
 
 use faer::{Mat, MatRef};
 
-use crate::basis::kernel::{Kernel, Bandwidth};
+use crate::basis::kernel::{Bandwidth, Kernel};
 use crate::basis::normal_equations;
 use crate::basis::normal_equations::Equations;
 use crate::basis::spec::BasisSpec;
@@ -36,11 +36,11 @@ const SEED: u64 = 0;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum NystromRegularisation {
     /// This λ > 0.
-    Given(f64),
+    Fixed(f64),
     /// Of these λ > 0, the one with the least generalised cross-validation error (Golub, Heath
     /// and Wahba 1979): the leave-one-out error with every sample's leverage taken for the mean,
     /// which needs no more than the sums.
-    CrossValidated(Vec<f64>),
+    Gcv(Vec<f64>),
 }
 
 /// What a Nyström regression's standard deviation knows.
@@ -52,7 +52,7 @@ pub enum PredictiveDeviation {
     Posterior,
     /// One number for each target, the deviation of generalised cross-validation: what a left-out
     /// sample's error is on average.
-    CrossValidated,
+    Gcv,
 }
 
 /// Kernel ridge regression with Gaussians on p of the samples and an unpenalised bias, fitted to
@@ -89,22 +89,22 @@ pub enum PredictiveDeviation {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NystromRidge {
     /// Width of the kernel.
-    pub width: Bandwidth,
+    pub bandwidth: Bandwidth,
     /// What the standard deviation knows.
     pub deviation: PredictiveDeviation,
     /// Penalty. In a Gaussian process λ is the noise's variance over the signal's, whatever the
     /// number of samples: the default grid goes from next to no noise (10⁻⁴) to hardly any signal
     /// (10).
-    pub penalty: NystromRegularisation,
+    pub regularisation: NystromRegularisation,
 }
 
 impl Default for NystromRidge {
     fn default() -> Self {
         let grid = (-4..=1).map(|e| 10_f64.powi(e)).collect();
         Self {
-            width: Bandwidth::Scatter(1.0),
+            bandwidth: Bandwidth::Relative(1.0),
             deviation: PredictiveDeviation::Posterior,
-            penalty: NystromRegularisation::CrossValidated(grid),
+            regularisation: NystromRegularisation::Gcv(grid),
         }
     }
 }
@@ -127,7 +127,7 @@ impl NystromRidge {
         let samples = x.ncols();
         check::count(centres.len(), samples)?;
         check::indices("centres", centres, samples)?;
-        let kernel = Kernel::Gaussian(self.width);
+        let kernel = Kernel::Gaussian(self.bandwidth);
         let columns = BasisSpec::of(&problem, problem.features(), kernel, centres)?.centred();
         drop(problem);
         let mut sums = SufficientStatistics::new(&columns);
@@ -142,14 +142,14 @@ impl NystromRidge {
     /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
         self.grid()?;
-        self.width.check()?;
+        self.bandwidth.check()?;
         stream::room(size.samples)
     }
 
     /// Fits sums over Gaussian columns of the same width.
     pub fn fit_sums(&self, columns: &BasisSpec, sums: &SufficientStatistics) -> Result<Fit> {
         let grid = self.grid()?;
-        columns.check_kernel(Kernel::Gaussian(self.width))?;
+        columns.check_kernel(Kernel::Gaussian(self.bandwidth))?;
         let equations = Summed::new(columns, sums)?;
         let whitened = Whitened::new(&equations)?;
         let errors: Vec<f64> = grid.iter().map(|&lambda| whitened.error(lambda)).collect();
@@ -161,9 +161,9 @@ impl NystromRidge {
     }
 
     fn grid(&self) -> Result<&[f64]> {
-        let grid = match &self.penalty {
-            NystromRegularisation::Given(lambda) => std::slice::from_ref(lambda),
-            NystromRegularisation::CrossValidated(grid) => grid,
+        let grid = match &self.regularisation {
+            NystromRegularisation::Fixed(lambda) => std::slice::from_ref(lambda),
+            NystromRegularisation::Gcv(grid) => grid,
         };
         check::grid(grid)?;
         Ok(grid)
@@ -232,7 +232,7 @@ impl<'a> Whitened<'a> {
                 linalg::upper_solve(lower.transpose(), &mut factor);
                 CholeskyFactor::pack(kept.clone(), factor.transpose())
             }
-            PredictiveDeviation::CrossValidated => {
+            PredictiveDeviation::Gcv => {
                 let samples = self.equations.samples() as f64;
                 let left = penalised::freedom(self.equations, used);
                 if left >= 1.0 {

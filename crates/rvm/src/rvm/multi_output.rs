@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Bandwidth};
+use crate::basis::kernel::{Bandwidth, Kernel};
 use crate::basis::normal_equations;
 use crate::basis::normal_equations::Equations;
 use crate::basis::spec::BasisSpec;
@@ -35,7 +35,7 @@ use crate::stream::summed::Summed;
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(1, 80, |_, t| t as f64 / 20.0);
 /// let y = Mat::from_fn(3, 80, |j, t| (x[(0, t)] * (j + 1) as f64).sin());
-/// let rvm = MultiOutputRvm { most: Some(12), ..MultiOutputRvm::default() };
+/// let rvm = MultiOutputRvm { max_columns: Some(12), ..MultiOutputRvm::default() };
 /// let model = rvm.fit(x.as_ref(), y.as_ref())?.model;
 /// assert!(model.kept_samples().len() <= 12, "shared by the three targets");
 /// assert_eq!(model.weights().shape(), (3, model.kept_samples().len()));
@@ -49,13 +49,13 @@ pub struct MultiOutputRvm {
     pub kernel: Kernel,
     /// Most columns to keep, at least 1: with so many none is added until one is deleted. `None`
     /// leaves it to the evidence.
-    pub most: Option<usize>,
+    pub max_columns: Option<usize>,
     /// Least noise variance, as a share of each target's variance, in (0, 1]: data without noise
     /// would drive it to zero.
     pub noise_floor: f64,
     /// Nats that each column kept must add to the evidence; at least 0. Columns that add next to
     /// nothing cost time in every prediction.
-    pub price: f64,
+    pub min_evidence_gain: f64,
     /// Steps that gain no more than this, in nats, are not taken; above 0.
     pub tolerance: f64,
     /// Climbs after the first, each from the best so far without some columns that neighbour each
@@ -68,10 +68,10 @@ pub struct MultiOutputRvm {
 impl Default for MultiOutputRvm {
     fn default() -> Self {
         Self {
-            kernel: Kernel::Gaussian(Bandwidth::Scatter(1.0)),
-            most: None,
+            kernel: Kernel::Gaussian(Bandwidth::Relative(1.0)),
+            max_columns: None,
             noise_floor: 1e-4,
-            price: 0.02,
+            min_evidence_gain: 0.02,
             tolerance: 1e-3,
             restarts: 0,
             max_iterations: 100_000,
@@ -153,19 +153,33 @@ impl MultiOutputRvm {
                 weights[(place(column), j)] = mu[(i, v)];
             }
         }
-        let factor = CholeskyFactor::pack(active.iter().map(|&k| place(k)).collect(), factor.as_ref());
+        let factor =
+            CholeskyFactor::pack(active.iter().map(|&k| place(k)).collect(), factor.as_ref());
         let posterior = Posterior::Weights(vec![factor]);
         let model = normal_equations::model(equations, &kept, weights.as_ref(), &noise, posterior);
         Ok((Fit { model, report: Report::new(vec![trace], None) }, found))
     }
 
     fn ascent(&self) -> Result<Ascent> {
-        let &Self { most, noise_floor, price, tolerance, restarts, max_iterations, .. } = self;
-        if most == Some(0) {
-            return Err(Error::Parameter { name: "most", value: 0.0, requirement: "at least 1" });
+        let &Self {
+            max_columns,
+            noise_floor,
+            min_evidence_gain,
+            tolerance,
+            restarts,
+            max_iterations,
+            ..
+        } = self;
+        if max_columns == Some(0) {
+            return Err(Error::Parameter {
+                name: "max_columns",
+                value: 0.0,
+                requirement: "at least 1",
+            });
         }
-        let most = most.unwrap_or(usize::MAX);
-        let ascent = Ascent { noise_floor, price, tolerance, max_iterations, restarts, most };
+        let most = max_columns.unwrap_or(usize::MAX);
+        let ascent =
+            Ascent { noise_floor, min_evidence_gain, tolerance, max_iterations, restarts, most };
         ascent.check()?;
         Ok(ascent)
     }

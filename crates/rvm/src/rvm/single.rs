@@ -4,7 +4,7 @@ use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Bandwidth};
+use crate::basis::kernel::{Bandwidth, Kernel};
 use crate::basis::normal_equations;
 use crate::basis::normal_equations::Equations;
 use crate::data::problem::Problem;
@@ -27,7 +27,7 @@ use crate::rvm::marginal_likelihood::targets::Targets;
 /// so that it is left again [`restarts`](Self::restarts) times, in search of a better one. An
 /// unpenalised bias stands beside the columns. The traces, one per target, hold the log evidence in
 /// nats of the standardised target, after each step of the first climb and after each restart that
-/// found more; it falls only where a column goes that is not worth its price.
+/// found more; it falls only where a column goes that is not worth its min_evidence_gain.
 ///
 /// ```
 /// use phalanx_rvm::{RelevanceVectorMachine, faer::Mat};
@@ -51,7 +51,7 @@ pub struct RelevanceVectorMachine {
     pub noise_floor: f64,
     /// Nats that each column kept must add to the evidence; at least 0. Columns that add next to
     /// nothing cost time in every prediction.
-    pub price: f64,
+    pub min_evidence_gain: f64,
     /// Steps that gain no more than this, in nats, are not taken; above 0.
     pub tolerance: f64,
     /// Climbs after the first, each from the best so far without some columns that neighbour each
@@ -64,9 +64,9 @@ pub struct RelevanceVectorMachine {
 impl Default for RelevanceVectorMachine {
     fn default() -> Self {
         Self {
-            kernel: Kernel::Gaussian(Bandwidth::Scatter(3.0)),
+            kernel: Kernel::Gaussian(Bandwidth::Relative(3.0)),
             noise_floor: 1e-4,
-            price: 0.02,
+            min_evidence_gain: 0.02,
             tolerance: 1e-3,
             restarts: 15,
             max_iterations: 100_000,
@@ -140,9 +140,11 @@ impl RelevanceVectorMachine {
     }
 
     fn ascent(&self) -> Result<Ascent> {
-        let &Self { noise_floor, tolerance, price, restarts, max_iterations, .. } = self;
+        let &Self { noise_floor, tolerance, min_evidence_gain, restarts, max_iterations, .. } =
+            self;
         let most = usize::MAX;
-        let ascent = Ascent { noise_floor, price, tolerance, max_iterations, restarts, most };
+        let ascent =
+            Ascent { noise_floor, min_evidence_gain, tolerance, max_iterations, restarts, most };
         ascent.check()?;
         Ok(ascent)
     }

@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Bandwidth};
+use crate::basis::kernel::{Bandwidth, Kernel};
 use crate::basis::normal_equations::Equations;
 use crate::basis::spec::BasisSpec;
 use crate::data::check;
@@ -83,7 +83,7 @@ pub struct AgarwalTriggs {
 impl Default for AgarwalTriggs {
     fn default() -> Self {
         Self {
-            kernel: Kernel::Gaussian(Bandwidth::Scatter(1.0)),
+            kernel: Kernel::Gaussian(Bandwidth::Relative(1.0)),
             nu: 0.3,
             stop: Stop::Threshold(1e-3),
             lambda: 0.1,

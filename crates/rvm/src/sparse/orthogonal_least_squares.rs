@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Bandwidth};
+use crate::basis::kernel::{Bandwidth, Kernel};
 use crate::basis::normal_equations::Equations;
 use crate::basis::spec::BasisSpec;
 use crate::data::check;
@@ -56,7 +56,7 @@ pub struct OrthogonalLeastSquares {
 
 impl Default for OrthogonalLeastSquares {
     fn default() -> Self {
-        let kernel = Kernel::Gaussian(Bandwidth::Scatter(1.0));
+        let kernel = Kernel::Gaussian(Bandwidth::Relative(1.0));
         Self { kernel, count: 10, lambda: 1e-3, sweeps: 20 }
     }
 }

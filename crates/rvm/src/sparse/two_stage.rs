@@ -3,7 +3,7 @@
 use faer::MatRef;
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Bandwidth};
+use crate::basis::kernel::{Bandwidth, Kernel};
 use crate::basis::normal_equations::Equations;
 use crate::basis::spec::BasisSpec;
 use crate::data::problem::Problem;
@@ -38,7 +38,7 @@ pub struct TwoStageSelection {
     /// When samples are dropped.
     pub samples: Stop,
     /// Width of the Gaussian kernels, on the features selected.
-    pub width: Bandwidth,
+    pub bandwidth: Bandwidth,
     /// ν/m > 0 of both stages, as in [`AgarwalTriggs::nu`].
     pub nu: f64,
 }
@@ -49,7 +49,7 @@ impl Default for TwoStageSelection {
         Self {
             features: stop,
             samples: stop,
-            width: Bandwidth::Scatter(1.0),
+            bandwidth: Bandwidth::Relative(1.0),
             nu: AgarwalTriggs::default().nu,
         }
     }
@@ -58,18 +58,18 @@ impl Default for TwoStageSelection {
 impl TwoStageSelection {
     /// Fits X (K×I) to Y (m×I).
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
-        self.width.check()?;
+        self.bandwidth.check()?;
         let problem = Problem::new(x, y)?;
         let first = self.first(&Design::full(&problem, Kernel::Linear)?)?;
         let features = first.model.selected_features().to_vec();
-        self.second(first, &Design::new(&problem, features, Kernel::Gaussian(self.width))?)
+        self.second(first, &Design::new(&problem, features, Kernel::Gaussian(self.bandwidth))?)
     }
 
     /// Refuses settings out of range, and problems too large for this fitter. What
     /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
         self.bridges(Kernel::Linear, self.features).check(size)?;
-        self.bridges(Kernel::Gaussian(self.width), self.samples).check(size)
+        self.bridges(Kernel::Gaussian(self.bandwidth), self.samples).check(size)
     }
 
     /// The first of two passes over a stream: the fit over linear columns, whose
@@ -82,8 +82,13 @@ impl TwoStageSelection {
 
     /// The second pass: the fit over Gaussian columns on the features that the `first` selected
     /// ([`BasisSpec::over`]).
-    pub fn fit_samples(&self, first: Fit, gaussian: &BasisSpec, sums: &SufficientStatistics) -> Result<Fit> {
-        gaussian.check_kernel(Kernel::Gaussian(self.width))?;
+    pub fn fit_samples(
+        &self,
+        first: Fit,
+        gaussian: &BasisSpec,
+        sums: &SufficientStatistics,
+    ) -> Result<Fit> {
+        gaussian.check_kernel(Kernel::Gaussian(self.bandwidth))?;
         let selected = first.model.selected_features();
         if let Some(&feature) = gaussian.features().iter().find(|f| !selected.contains(f)) {
             return Err(Error::NotSelected { feature });
@@ -99,7 +104,7 @@ impl TwoStageSelection {
         if first.model.selected_features().is_empty() {
             return Ok(first);
         }
-        let bridges = self.bridges(Kernel::Gaussian(self.width), self.samples);
+        let bridges = self.bridges(Kernel::Gaussian(self.bandwidth), self.samples);
         let Fit { model, report } = bridges.solve(gaussian)?;
         let traces = [first.report.traces, report.traces].concat();
         Ok(Fit { model, report: Report::new(traces, report.penalty) })

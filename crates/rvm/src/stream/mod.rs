@@ -29,7 +29,10 @@ const WIDTH: usize = 96;
 /// machine is the last bit of a block's products.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "SufficientStatisticsParts", into = "SufficientStatisticsParts"))]
+#[cfg_attr(
+    feature = "serde",
+    serde(try_from = "SufficientStatisticsParts", into = "SufficientStatisticsParts")
+)]
 pub struct SufficientStatistics {
     parts: SufficientStatisticsParts,
 }
@@ -40,14 +43,26 @@ impl SufficientStatistics {
         let (size, outputs) = (columns.size(), columns.outputs());
         let all = size + outputs + 1;
         let packed = vec![0; all * (all + 1) / 2];
-        Self { parts: SufficientStatisticsParts { columns: columns.fingerprint(), size, outputs, packed } }
+        Self {
+            parts: SufficientStatisticsParts {
+                columns: columns.fingerprint(),
+                size,
+                outputs,
+                packed,
+            },
+        }
     }
 
     /// Adds samples: inputs K×n and targets m×n. On an error the sums are as they were.
     ///
     /// Blocks are cut from the first sample of `x` on: to have the same bits in another run, add
     /// the same samples in each call. Working memory is 512 × (p + m + 1) numbers.
-    pub fn add(&mut self, columns: &BasisSpec, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<()> {
+    pub fn add(
+        &mut self,
+        columns: &BasisSpec,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+    ) -> Result<()> {
         self.check_columns(columns)?;
         columns.check_samples(x, y)?;
         self.check_room(x.ncols())?;
@@ -115,7 +130,8 @@ impl SufficientStatistics {
 
     /// The counts matter too: parts from outside may have any fingerprint.
     fn check_same(&self, columns: u64, size: usize, outputs: usize) -> Result<()> {
-        let SufficientStatisticsParts { columns: sums, size: summed, outputs: targets, .. } = self.parts;
+        let SufficientStatisticsParts { columns: sums, size: summed, outputs: targets, .. } =
+            self.parts;
         if (sums, summed, targets) == (columns, size, outputs) {
             return Ok(());
         }

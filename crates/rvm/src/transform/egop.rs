@@ -16,7 +16,7 @@ use crate::model::Model;
 use crate::ridge::nystrom::NystromRidge;
 use crate::stream::SufficientStatistics;
 use crate::transform::affine_map::AffineMap;
-use crate::transform::learned_metric::{TargetGroup, LearnedMetric};
+use crate::transform::learned_metric::{LearnedMetric, TargetGroup};
 use crate::transform::pca::{FeatureBlock, of_blocks};
 
 /// Seeds of the choice of centres, and of the samples whose gradients are averaged.
@@ -105,8 +105,9 @@ impl ExpectedGradientOuterProduct {
         let directions = learnt.collect::<Result<Vec<_>>>()?;
         let ranks = directions.iter().map(Mat::nrows);
         let described = groups.iter().zip(ranks);
-        let groups: Vec<TargetGroup> =
-            described.map(|(outputs, rank)| TargetGroup { outputs: outputs.clone(), rank }).collect();
+        let groups: Vec<TargetGroup> = described
+            .map(|(outputs, rank)| TargetGroup { outputs: outputs.clone(), rank })
+            .collect();
         let all = stacked(&directions, principal.nrows());
         let matrix = linalg::product(all.as_ref(), principal.as_ref());
         Ok(LearnedMetric { projection: AffineMap::about(&mean, matrix.as_ref())?, groups })
@@ -167,7 +168,7 @@ impl ExpectedGradientOuterProduct {
         let problem = Problem::in_proportion(z, y)?;
         let centres = random_subset(z.ncols(), self.centres, CENTRE_SEED);
         check::count(centres.len(), z.ncols())?;
-        let kernel = Kernel::Gaussian(self.regression.width);
+        let kernel = Kernel::Gaussian(self.regression.bandwidth);
         let columns = BasisSpec::of(&problem, problem.features(), kernel, &centres)?.centred();
         let mut sums = SufficientStatistics::new(&columns);
         sums.add(&columns, z, y)?;

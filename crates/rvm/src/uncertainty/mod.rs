@@ -38,10 +38,7 @@ use crate::uncertainty::principal_points::PrincipalPoints;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(try_from = "ResidualKdeParts", into = "ResidualKdeParts")
-)]
+#[cfg_attr(feature = "serde", serde(try_from = "ResidualKdeParts", into = "ResidualKdeParts"))]
 pub struct ResidualKde {
     parts: ResidualKdeParts,
 }
@@ -132,8 +129,7 @@ impl ResidualKde {
     /// The residuals, in their units, of the samples whose predictions are nearest to this one,
     /// m×neighbours.
     fn residuals_near(&self, prediction: &[f64]) -> Mat<f64> {
-        let ResidualKdeParts { outputs, neighbours, units, predictions, residuals } =
-            &self.parts;
+        let ResidualKdeParts { outputs, neighbours, units, predictions, residuals } = &self.parts;
         let distance = |sample: &[f64]| -> f64 {
             let differences = sample.iter().zip(prediction).zip(units);
             differences.map(|((a, b), unit)| ((a - b) / unit).powi(2)).sum()

@@ -1,12 +1,14 @@
 //! Everything public can be sent to, and shared between, threads.
 
 use phalanx_rvm::{
-    Basis, FeatureBlock, AgarwalTriggs, TwoStageSelection, BasisSpec, BlockPca, ResidualKde,
-    ResidualKdeParts, PredictiveDeviation, Error, CholeskyFactor, Fit, OrthogonalLeastSquares, ExpectedGradientOuterProduct,
-    TargetGroup, AugmentedRvm, Hypothesis, Kernel, KernelRidge, Regularisation, ArdRvm, LearnedMetric, Model,
-    ModelParts, MultiOutputRvm, Mlp, PcaMlp, MlpParts, NystromRidge, NystromRegularisation,
-    MlpTrainer, PilotSample, Posterior, Progress, GroupedRegressor, AffineMap, AffineMapParts, Regressor,
-    Report, Ridge, Scratch, StandardScaler, Stop, SufficientStatistics, SufficientStatisticsParts, LengthScales, RelevanceVectorMachine, Trace, Bandwidth,
+    AffineMap, AffineMapParts, AgarwalTriggs, ArdRvm, AugmentedRvm, Bandwidth, Basis, BasisSpec,
+    BlockPca, CholeskyFactor, Error, ExpectedGradientOuterProduct, FeatureBlock, Fit,
+    GroupedRegressor, Hypothesis, Kernel, KernelRidge, LearnedMetric, LengthScales, Mlp, MlpParts,
+    MlpTrainer, Model, ModelParts, MultiOutputRvm, NystromRegularisation, NystromRidge,
+    OrthogonalLeastSquares, PcaMlp, PilotSample, Posterior, PredictiveDeviation, Progress,
+    Regressor, Regularisation, RelevanceVectorMachine, Report, ResidualKde, ResidualKdeParts,
+    Ridge, Scratch, StandardScaler, Stop, SufficientStatistics, SufficientStatisticsParts,
+    TargetGroup, Trace, TwoStageSelection,
 };
 
 const fn shared<T: Send + Sync>() {}

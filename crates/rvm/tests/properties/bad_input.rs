@@ -2,9 +2,9 @@
 
 use faer::Mat;
 use phalanx_rvm::{
-    AgarwalTriggs, TwoStageSelection, Error, OrthogonalLeastSquares, Kernel, KernelRidge, Regularisation, ArdRvm,
-    MultiOutputRvm, NystromRidge, NystromRegularisation, ProblemSize, Regressor, Ridge, StandardScaler, Stop, RelevanceVectorMachine,
-    Bandwidth,
+    AgarwalTriggs, ArdRvm, Bandwidth, Error, Kernel, KernelRidge, MultiOutputRvm,
+    NystromRegularisation, NystromRidge, OrthogonalLeastSquares, ProblemSize, Regressor,
+    Regularisation, RelevanceVectorMachine, Ridge, StandardScaler, Stop, TwoStageSelection,
 };
 use proptest::prelude::*;
 
@@ -34,7 +34,7 @@ proptest! {
         for (name, fit) in FITTERS {
             let model = match fit(x.as_ref(), y.as_ref()) {
                 Ok(fit) => fit.model,
-                Err(Error::Count { .. }) if name == "forward" => continue,
+                Err(Error::Count { .. }) if name == "orthogonal least squares" => continue,
                 Err(error) => return Err(TestCaseError::fail(format!("{name}: {error}"))),
             };
             let (mean, std) = model.predict_with_std(x.as_ref())?;
@@ -113,36 +113,64 @@ fn hyper_parameters_out_of_range_are_named() {
         assert_eq!(name(AgarwalTriggs { nu: bad, ..bridges }.fit(x, y)), "nu");
         assert_eq!(name(AgarwalTriggs { lambda: bad, ..bridges }.fit(x, y)), "lambda");
         assert_eq!(name(AgarwalTriggs { tolerance: bad, ..bridges }.fit(x, y)), "tolerance");
-        assert_eq!(name(TwoStageSelection { nu: bad, ..TwoStageSelection::default() }.fit(x, y)), "nu");
+        assert_eq!(
+            name(TwoStageSelection { nu: bad, ..TwoStageSelection::default() }.fit(x, y)),
+            "nu"
+        );
         assert_eq!(name(OrthogonalLeastSquares { lambda: bad, ..forward }.fit(x, y)), "lambda");
-        assert_eq!(name(RelevanceVectorMachine { tolerance: bad, ..tipping }.fit(x, y)), "tolerance");
-        assert_eq!(name(RelevanceVectorMachine { noise_floor: bad, ..tipping }.fit(x, y)), "noise_floor");
+        assert_eq!(
+            name(RelevanceVectorMachine { tolerance: bad, ..tipping }.fit(x, y)),
+            "tolerance"
+        );
+        assert_eq!(
+            name(RelevanceVectorMachine { noise_floor: bad, ..tipping }.fit(x, y)),
+            "noise_floor"
+        );
         if bad != 0.0 {
-            assert_eq!(name(RelevanceVectorMachine { price: bad, ..tipping }.fit(x, y)), "price");
+            assert_eq!(
+                name(RelevanceVectorMachine { min_evidence_gain: bad, ..tipping }.fit(x, y)),
+                "min_evidence_gain"
+            );
         }
         assert_eq!(name(MultiOutputRvm { tolerance: bad, ..shared }.fit(x, y)), "tolerance");
         assert_eq!(name(MultiOutputRvm { noise_floor: bad, ..shared }.fit(x, y)), "noise_floor");
-        let lambda = Regularisation::LeaveOneOut(vec![1.0, bad]);
-        assert_eq!(name(KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y)), "lambda");
-        let penalty = NystromRegularisation::CrossValidated(vec![1.0, bad]);
-        assert_eq!(name(NystromRidge { penalty, ..NystromRidge::default() }.fit(x, y)), "lambda");
-        let kernel = Kernel::Gaussian(Bandwidth::Scatter(bad));
+        let lambda = Regularisation::Loocv(vec![1.0, bad]);
+        assert_eq!(
+            name(KernelRidge { regularisation: lambda, ..KernelRidge::default() }.fit(x, y)),
+            "lambda"
+        );
+        let penalty = NystromRegularisation::Gcv(vec![1.0, bad]);
+        assert_eq!(
+            name(NystromRidge { regularisation: penalty, ..NystromRidge::default() }.fit(x, y)),
+            "lambda"
+        );
+        let kernel = Kernel::Gaussian(Bandwidth::Relative(bad));
         assert_eq!(name(AgarwalTriggs { kernel, ..bridges }.fit(x, y)), "c");
     }
-    let kernel = Kernel::Gaussian(Bandwidth::Beta(0.0));
-    assert_eq!(name(RelevanceVectorMachine { kernel, ..tipping }.fit(x, y)), "beta");
-    assert_eq!(name(AgarwalTriggs { stop: Stop::Threshold(-1.0), ..bridges }.fit(x, y)), "threshold");
+    let kernel = Kernel::Gaussian(Bandwidth::Gamma(0.0));
+    assert_eq!(name(RelevanceVectorMachine { kernel, ..tipping }.fit(x, y)), "gamma");
+    assert_eq!(
+        name(AgarwalTriggs { stop: Stop::Threshold(-1.0), ..bridges }.fit(x, y)),
+        "threshold"
+    );
     assert_eq!(name(AgarwalTriggs { max_iterations: 0, ..bridges }.fit(x, y)), "max_iterations");
-    assert_eq!(name(RelevanceVectorMachine { max_iterations: 0, ..tipping }.fit(x, y)), "max_iterations");
-    assert_eq!(name(MultiOutputRvm { most: Some(0), ..shared }.fit(x, y)), "most");
-    let lambda = Regularisation::LeaveOneOut(Vec::new());
-    let error = KernelRidge { lambda, ..KernelRidge::default() }.fit(x, y).unwrap_err();
+    assert_eq!(
+        name(RelevanceVectorMachine { max_iterations: 0, ..tipping }.fit(x, y)),
+        "max_iterations"
+    );
+    assert_eq!(name(MultiOutputRvm { max_columns: Some(0), ..shared }.fit(x, y)), "max_columns");
+    let lambda = Regularisation::Loocv(Vec::new());
+    let error =
+        KernelRidge { regularisation: lambda, ..KernelRidge::default() }.fit(x, y).unwrap_err();
     assert!(matches!(error, Error::Empty { .. }));
     for asked in [0, 13] {
         let count = Error::Count { asked, available: 12 };
         let stop = Stop::Count(asked);
         assert_eq!(AgarwalTriggs { stop, ..bridges }.fit(x, y).unwrap_err(), count);
-        assert_eq!(OrthogonalLeastSquares { count: asked, ..forward }.fit(x, y).unwrap_err(), count);
+        assert_eq!(
+            OrthogonalLeastSquares { count: asked, ..forward }.fit(x, y).unwrap_err(),
+            count
+        );
     }
     let on = |centres: &[usize]| NystromRidge::default().fit_on(x, y, centres).unwrap_err();
     assert_eq!(on(&[]), Error::Count { asked: 0, available: 12 });
@@ -187,10 +215,13 @@ fn sizes_are_refused_beforehand() {
 fn too_few_steps_are_reported_and_not_refused() {
     let (x, y) = smooth(3, 4, 2, 12);
     let (x, y) = (x.as_ref(), y.as_ref());
-    let bridges = AgarwalTriggs { max_iterations: 1, ..AgarwalTriggs::default() }.fit(x, y).unwrap();
+    let bridges =
+        AgarwalTriggs { max_iterations: 1, ..AgarwalTriggs::default() }.fit(x, y).unwrap();
     assert!(!bridges.report.converged && bridges.report.iterations == 1);
     assert_eq!(bridges.report.penalty, Some(AgarwalTriggs::default().nu));
-    let tipping = RelevanceVectorMachine { max_iterations: 1, ..RelevanceVectorMachine::default() }.fit(x, y).unwrap();
+    let tipping = RelevanceVectorMachine { max_iterations: 1, ..RelevanceVectorMachine::default() }
+        .fit(x, y)
+        .unwrap();
     assert!(!tipping.report.converged && tipping.report.iterations == 2);
     let shared = MultiOutputRvm { max_iterations: 1, ..MultiOutputRvm::default() };
     let shared = shared.fit(x, y).unwrap();

@@ -2,7 +2,8 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    ResidualKde, PredictiveDeviation, AugmentedRvm, Model, NystromRidge, MlpTrainer, Regressor, Scratch, RelevanceVectorMachine,
+    AugmentedRvm, MlpTrainer, Model, NystromRidge, PredictiveDeviation, Regressor,
+    RelevanceVectorMachine, ResidualKde, Scratch,
 };
 use proptest::prelude::*;
 
@@ -50,9 +51,9 @@ proptest! {
     #[test]
     fn a_fit_that_uses_up_all_samples_has_the_targets_own_deviation(seed in any::<u64>()) {
         let (x, y) = smooth(seed, 5, 1, 4);
-        for deviation in [PredictiveDeviation::Posterior, PredictiveDeviation::CrossValidated] {
-            let penalty = phalanx_rvm::NystromRegularisation::Given(1e-9);
-            let nystrom = NystromRidge { penalty, deviation, ..NystromRidge::default() };
+        for deviation in [PredictiveDeviation::Posterior, PredictiveDeviation::Gcv] {
+            let penalty = phalanx_rvm::NystromRegularisation::Fixed(1e-9);
+            let nystrom = NystromRidge { regularisation: penalty, deviation, ..NystromRidge::default() };
             let model = nystrom.fit(x.as_ref(), y.as_ref())?.model;
             let scale = phalanx_rvm::StandardScaler::fit(y.as_ref())?.scale()[0];
             prop_assert!(model.noise()[0] > 0.99 * scale, "{} {scale}", model.noise()[0]);
@@ -90,8 +91,7 @@ fn a_hypothesis_of_one_sample_has_the_deviation_of_its_neighbourhood() {
     let predictions = Mat::zeros(2, 9);
     let residual = |t: usize| if t == 0 { 3.0 } else { 0.01 * t as f64 };
     let truth = Mat::from_fn(2, 9, |j, t| if j == 0 { residual(t) } else { 0.0 });
-    let density =
-        ResidualKde::fit(predictions.as_ref(), truth.as_ref(), &[1.0, 1.0], 9).unwrap();
+    let density = ResidualKde::fit(predictions.as_ref(), truth.as_ref(), &[1.0, 1.0], 9).unwrap();
     let hypotheses = density.hypotheses(&[0.0, 0.0], 3).unwrap();
     let lonely = hypotheses.iter().find(|h| (h.mean[0] - 3.0).abs() < 1e-9).expect("the outlier's");
     let all = ((0..9).map(|t| residual(t).powi(2)).sum::<f64>() / 9.0).sqrt();

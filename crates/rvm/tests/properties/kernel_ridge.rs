@@ -1,7 +1,7 @@
 //! Kernel ridge regression against refitting without each sample, and as a Gaussian process.
 
 use faer::{Mat, MatRef};
-use phalanx_rvm::{KernelRidge, Regularisation, Regressor, StandardScaler, Bandwidth};
+use phalanx_rvm::{Bandwidth, KernelRidge, Regressor, Regularisation, StandardScaler};
 use proptest::prelude::*;
 
 use crate::problems::{smooth, solve};
@@ -24,7 +24,7 @@ fn bordered(z: MatRef<'_, f64>, kept: &[usize], lambda: f64) -> Mat<f64> {
 }
 
 fn fitter(lambda: Regularisation) -> KernelRidge {
-    KernelRidge { width: Bandwidth::Beta(BETA), lambda }
+    KernelRidge { bandwidth: Bandwidth::Gamma(BETA), regularisation: lambda }
 }
 
 proptest! {
@@ -52,14 +52,14 @@ proptest! {
             }
             total / (n * m) as f64
         };
-        let fit = fitter(Regularisation::LeaveOneOut(grid.clone())).fit(x.as_ref(), y.as_ref())?;
+        let fit = fitter(Regularisation::Loocv(grid.clone())).fit(x.as_ref(), y.as_ref())?;
         let expected: Vec<f64> = grid.iter().map(|&lambda| brute(lambda)).collect();
         for (found, expected) in fit.report.traces[0].objective.iter().zip(&expected) {
             prop_assert!((found - expected).abs() < 1e-7 * expected, "{found} {expected}");
         }
         let best = (0..grid.len()).min_by(|&a, &b| expected[a].total_cmp(&expected[b]));
         prop_assert_eq!(fit.report.penalty, best.map(|b| grid[b]));
-        let given = fitter(Regularisation::Given(fit.report.penalty.unwrap())).fit(x.as_ref(), y.as_ref())?;
+        let given = fitter(Regularisation::Fixed(fit.report.penalty.unwrap())).fit(x.as_ref(), y.as_ref())?;
         prop_assert_eq!(given.model, fit.model);
     }
 
@@ -75,7 +75,7 @@ proptest! {
         let system = bordered(z.as_ref(), &all, lambda);
         let right = Mat::from_fn(n + 1, m, |i, j| if i < n { targets[(j, i)] } else { 0.0 });
         let dual = solve(system.as_ref(), right.as_ref());
-        let model = fitter(Regularisation::Given(lambda)).fit(x.as_ref(), y.as_ref())?.model;
+        let model = fitter(Regularisation::Fixed(lambda)).fit(x.as_ref(), y.as_ref())?.model;
         let (mean, std) = model.predict_with_std(new.as_ref())?;
         for t in 0..10 {
             let k = Mat::from_fn(n + 1, 1, |i, _| {

@@ -2,35 +2,44 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    AgarwalTriggs, TwoStageSelection, Fit, OrthogonalLeastSquares, Kernel, KernelRidge, ArdRvm, MultiOutputRvm,
-    NystromRidge, Result, Ridge, Stop, RelevanceVectorMachine, Bandwidth,
+    AgarwalTriggs, ArdRvm, Bandwidth, Fit, Kernel, KernelRidge, MultiOutputRvm, NystromRidge,
+    OrthogonalLeastSquares, RelevanceVectorMachine, Result, Ridge, Stop, TwoStageSelection,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
 pub(crate) type Fitter = fn(MatRef<'_, f64>, MatRef<'_, f64>) -> Result<Fit>;
 
-pub(crate) const GAUSSIAN: Kernel = Kernel::Gaussian(Bandwidth::Scatter(1.0));
+pub(crate) const GAUSSIAN: Kernel = Kernel::Gaussian(Bandwidth::Relative(1.0));
 
 /// Every fitter, with the kernels that it knows.
 pub(crate) const FITTERS: [(&str, Fitter); 13] = [
     ("ridge, linear", |x, y| Ridge::default().fit(x, y)),
     ("ridge, Gaussian", |x, y| Ridge { kernel: GAUSSIAN, lambda: 0.1 }.fit(x, y)),
-    ("bridges, linear", |x, y| AgarwalTriggs { kernel: Kernel::Linear, ..AgarwalTriggs::default() }.fit(x, y)),
-    ("bridges, Gaussian", |x, y| AgarwalTriggs::default().fit(x, y)),
-    ("Tipping, linear", |x, y| RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() }.fit(x, y)),
-    ("Tipping, Gaussian", |x, y| RelevanceVectorMachine::default().fit(x, y)),
-    ("multivariate RVM, linear", |x, y| {
+    ("Agarwal-Triggs, linear", |x, y| {
+        AgarwalTriggs { kernel: Kernel::Linear, ..AgarwalTriggs::default() }.fit(x, y)
+    }),
+    ("Agarwal-Triggs, Gaussian", |x, y| AgarwalTriggs::default().fit(x, y)),
+    ("RVM, linear", |x, y| {
+        RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() }
+            .fit(x, y)
+    }),
+    ("RVM, Gaussian", |x, y| RelevanceVectorMachine::default().fit(x, y)),
+    ("multi-output RVM, linear", |x, y| {
         MultiOutputRvm { kernel: Kernel::Linear, ..MultiOutputRvm::default() }.fit(x, y)
     }),
-    ("multivariate RVM, Gaussian", |x, y| MultiOutputRvm::default().fit(x, y)),
-    ("learnt widths", |x, y| ArdRvm { rounds: 3, ..ArdRvm::default() }.fit(x, y)),
+    ("multi-output RVM, Gaussian", |x, y| MultiOutputRvm::default().fit(x, y)),
+    ("ARD", |x, y| ArdRvm { rounds: 3, ..ArdRvm::default() }.fit(x, y)),
     ("kernel ridge", |x, y| KernelRidge::default().fit(x, y)),
-    ("Nyström", |x, y| NystromRidge::default().fit(x, y)),
-    ("forward", |x, y| {
-        OrthogonalLeastSquares { kernel: GAUSSIAN, count: 1, ..OrthogonalLeastSquares::default() }.fit(x, y)
+    ("Nyström ridge", |x, y| NystromRidge::default().fit(x, y)),
+    ("orthogonal least squares", |x, y| {
+        OrthogonalLeastSquares { kernel: GAUSSIAN, count: 1, ..OrthogonalLeastSquares::default() }
+            .fit(x, y)
     }),
-    ("cascade", |x, y| TwoStageSelection { features: Stop::Threshold(0.05), ..TwoStageSelection::default() }.fit(x, y)),
+    ("two stages", |x, y| {
+        TwoStageSelection { features: Stop::Threshold(0.05), ..TwoStageSelection::default() }
+            .fit(x, y)
+    }),
 ];
 
 pub(crate) struct Source(Pcg64Mcg);

@@ -2,9 +2,10 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    FeatureBlock, AgarwalTriggs, TwoStageSelection, BasisSpec, Error, OrthogonalLeastSquares, ExpectedGradientOuterProduct, Kernel, KernelRidge,
-    ArdRvm, Model, MultiOutputRvm, NystromRidge, MlpTrainer, PilotSample, GroupedRegressor, Regressor, Result,
-    Ridge, Stop, SufficientStatistics, RelevanceVectorMachine, Bandwidth, random_subset,
+    AgarwalTriggs, ArdRvm, Bandwidth, BasisSpec, Error, ExpectedGradientOuterProduct, FeatureBlock,
+    GroupedRegressor, Kernel, KernelRidge, MlpTrainer, Model, MultiOutputRvm, NystromRidge,
+    OrthogonalLeastSquares, PilotSample, Regressor, RelevanceVectorMachine, Result, Ridge, Stop,
+    SufficientStatistics, TwoStageSelection, random_subset,
 };
 
 use crate::problems::{GAUSSIAN, Source, columns};
@@ -114,7 +115,10 @@ fn summed(columns: &BasisSpec, x: &Mat<f64>, y: &Mat<f64>) -> SufficientStatisti
 const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 
 /// Fits sums over a random pilot's columns.
-fn streamed(kernel: Kernel, fit: impl Fn(&BasisSpec, &SufficientStatistics) -> Result<phalanx_rvm::Fit>) {
+fn streamed(
+    kernel: Kernel,
+    fit: impl Fn(&BasisSpec, &SufficientStatistics) -> Result<phalanx_rvm::Fit>,
+) {
     alike(&ROWS, |x, y| {
         let columns = pilot_columns(x, y, kernel, &ALL);
         of_model(&fit(&columns, &summed(&columns, x, y)).unwrap().model)
@@ -146,7 +150,7 @@ fn forward_selection() {
 
 #[test]
 fn multivariate_rvm() {
-    let rvm = MultiOutputRvm { most: Some(30), ..MultiOutputRvm::default() };
+    let rvm = MultiOutputRvm { max_columns: Some(30), ..MultiOutputRvm::default() };
     streamed(rvm.kernel, |columns, sums| rvm.fit_sums(columns, sums));
 }
 
@@ -161,12 +165,15 @@ fn nystrom() {
 
 #[test]
 fn cascade() {
-    let cascade =
-        TwoStageSelection { features: Stop::Count(5), samples: Stop::Count(30), ..TwoStageSelection::default() };
+    let cascade = TwoStageSelection {
+        features: Stop::Count(5),
+        samples: Stop::Count(30),
+        ..TwoStageSelection::default()
+    };
     alike(&ROWS, |x, y| {
         let linear = pilot_columns(x, y, Kernel::Linear, &ALL);
         let first = cascade.fit_features(&linear, &summed(&linear, x, y)).unwrap();
-        let kernel = Kernel::Gaussian(cascade.width);
+        let kernel = Kernel::Gaussian(cascade.bandwidth);
         let gaussian = pilot_columns(x, y, kernel, first.model.selected_features());
         let sums = summed(&gaussian, x, y);
         of_model(&cascade.fit_samples(first, &gaussian, &sums).unwrap().model)
@@ -193,7 +200,8 @@ fn learnt_metric() {
             let (x, y) = (metric.part(group, z.as_ref()), metric.targets(group, y.as_ref()));
             regression.fit_on(x, y.as_ref(), &centres).unwrap().model
         };
-        let projected = GroupedRegressor::from_parts(metric.clone(), vec![model(0), model(1)]).unwrap();
+        let projected =
+            GroupedRegressor::from_parts(metric.clone(), vec![model(0), model(1)]).unwrap();
         error(|x| projected.predict_with_std(x).unwrap().0)
     });
 }
@@ -239,8 +247,9 @@ fn a_pilot_that_misses_what_varies_is_refused_by_name() {
     let samples: Vec<usize> = (0..CENTRES).map(|k| k * x.ncols() / CENTRES).collect();
     let [pilot_x, pilot_y] = [&x, &y].map(|all| columns(all.as_ref(), &samples));
     let pilot = PilotSample { x: pilot_x.as_ref(), y: pilot_y.as_ref(), samples: &samples };
-    let columns = BasisSpec::new(&pilot, Kernel::Gaussian(Bandwidth::Scatter(1.0))).unwrap();
-    let refused = SufficientStatistics::new(&columns).add(&columns, x.as_ref(), y.as_ref()).unwrap_err();
+    let columns = BasisSpec::new(&pilot, Kernel::Gaussian(Bandwidth::Relative(1.0))).unwrap();
+    let refused =
+        SufficientStatistics::new(&columns).add(&columns, x.as_ref(), y.as_ref()).unwrap_err();
     assert!(matches!(refused, Error::ConstantInPilot { what: "y", row: 2, .. }), "{refused}");
     assert!(refused.to_string().contains("at random"), "{refused}");
 }

@@ -5,8 +5,9 @@ use std::ops::Range;
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    AgarwalTriggs, TwoStageSelection, BasisSpec, Error, Fit, OrthogonalLeastSquares, Kernel, PilotSample, Regressor, Result,
-    Ridge, Stop, SufficientStatistics, SufficientStatisticsParts, Bandwidth, random_subset,
+    AgarwalTriggs, Bandwidth, BasisSpec, Error, Fit, Kernel, OrthogonalLeastSquares, PilotSample,
+    Regressor, Result, Ridge, Stop, SufficientStatistics, SufficientStatisticsParts,
+    TwoStageSelection, random_subset,
 };
 use proptest::prelude::*;
 
@@ -19,7 +20,11 @@ pub(crate) fn whole(x: MatRef<'_, f64>, y: MatRef<'_, f64>, kernel: Kernel) -> R
     BasisSpec::new(&PilotSample { x, y, samples: &samples }, kernel)
 }
 
-pub(crate) fn summed(columns: &BasisSpec, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<SufficientStatistics> {
+pub(crate) fn summed(
+    columns: &BasisSpec,
+    x: MatRef<'_, f64>,
+    y: MatRef<'_, f64>,
+) -> Result<SufficientStatistics> {
     let mut sums = SufficientStatistics::new(columns);
     sums.add(columns, x, y)?;
     Ok(sums)
@@ -31,7 +36,12 @@ const CALL: usize = 700;
 const PILOT_SEED: u64 = 1;
 
 /// Adds `calls` of the stream, each cut into a block of 512 and a rest.
-fn add(columns: &BasisSpec, x: &Mat<f64>, y: &Mat<f64>, calls: Range<usize>) -> SufficientStatistics {
+fn add(
+    columns: &BasisSpec,
+    x: &Mat<f64>,
+    y: &Mat<f64>,
+    calls: Range<usize>,
+) -> SufficientStatistics {
     let mut sums = SufficientStatistics::new(columns);
     for call in calls {
         let (start, width) = (call * CALL, CALL.min(x.ncols() - call * CALL));
@@ -45,7 +55,8 @@ fn pilot_columns(x: &Mat<f64>, y: &Mat<f64>, kernel: Kernel) -> BasisSpec {
     let samples = random_subset(x.ncols(), x.ncols().div_ceil(10), PILOT_SEED);
     let pick = |from: &Mat<f64>| crate::problems::columns(from.as_ref(), &samples);
     let (x, y) = (pick(x), pick(y));
-    BasisSpec::new(&PilotSample { x: x.as_ref(), y: y.as_ref(), samples: &samples }, kernel).unwrap()
+    BasisSpec::new(&PilotSample { x: x.as_ref(), y: y.as_ref(), samples: &samples }, kernel)
+        .unwrap()
 }
 
 #[test]
@@ -147,7 +158,7 @@ proptest! {
         let pilot = PilotSample { x: x.as_ref(), y: y.as_ref(), samples: &samples };
         let linear = BasisSpec::new(&pilot, Kernel::Linear)?;
         let first = cascade.fit_features(&linear, &summed(&linear, x.as_ref(), y.as_ref())?)?;
-        let kernel = Kernel::Gaussian(cascade.width);
+        let kernel = Kernel::Gaussian(cascade.bandwidth);
         let gaussian = BasisSpec::over(&pilot, kernel, first.model.selected_features())?;
         let sums = summed(&gaussian, x.as_ref(), y.as_ref())?;
         let fit = cascade.fit_samples(first, &gaussian, &sums)?;
@@ -163,7 +174,7 @@ proptest! {
         let (k, m, p) = (4, 2, 30);
         let samples: Vec<usize> = (0..p).collect();
         let (px, py) = (x.as_ref().subcols(0, p), y.as_ref().subcols(0, p));
-        let kernel = Kernel::Gaussian(Bandwidth::Beta(0.1));
+        let kernel = Kernel::Gaussian(Bandwidth::Gamma(0.1));
         let columns = BasisSpec::new(&PilotSample { x: px, y: py, samples: &samples }, kernel)?;
         let scale = |from: MatRef<'_, f64>, of: MatRef<'_, f64>| {
             phalanx_rvm::StandardScaler::fit(of).and_then(|s| s.apply(from))
@@ -248,8 +259,14 @@ fn sums_of_other_counts_belong_to_no_columns() {
     let (x, y) = smooth(4, 5, 3, 30);
     let columns = whole(x.as_ref(), y.as_ref(), Kernel::Linear).unwrap();
     let own = summed(&columns, x.as_ref(), y.as_ref()).unwrap();
-    let SufficientStatisticsParts { columns: fingerprint, size, outputs, packed } = own.clone().into_parts();
-    let parts = SufficientStatisticsParts { columns: fingerprint, size: size + 1, outputs: outputs - 1, packed };
+    let SufficientStatisticsParts { columns: fingerprint, size, outputs, packed } =
+        own.clone().into_parts();
+    let parts = SufficientStatisticsParts {
+        columns: fingerprint,
+        size: size + 1,
+        outputs: outputs - 1,
+        packed,
+    };
     let mut claimed = SufficientStatistics::from_parts(parts).unwrap();
     let other = |result| matches!(result, Err(Error::OtherColumns { .. }));
     assert!(other(claimed.add(&columns, x.as_ref(), y.as_ref())));
@@ -274,7 +291,10 @@ fn samples_that_cannot_be_summed_are_named_and_change_nothing() {
     assert!(matches!(sums.add(&columns, x.as_ref(), short), Err(Error::Shape { .. })));
     let other = whole(x.as_ref().subcols(0, 29), short, GAUSSIAN).unwrap();
     assert!(matches!(sums.add(&other, x.as_ref(), y.as_ref()), Err(Error::OtherColumns { .. })));
-    assert!(matches!(sums.merge(&SufficientStatistics::new(&other)), Err(Error::OtherColumns { .. })));
+    assert!(matches!(
+        sums.merge(&SufficientStatistics::new(&other)),
+        Err(Error::OtherColumns { .. })
+    ));
     assert_eq!(sums, before);
 }
 

@@ -1,7 +1,7 @@
 //! Data at the edge of what numbers can hold: an answer as good as they allow, or an error by name.
 
 use faer::{Mat, MatRef};
-use phalanx_rvm::{Error, AugmentedRvm, Model, Regressor};
+use phalanx_rvm::{AugmentedRvm, Error, Model, Regressor};
 use proptest::prelude::*;
 
 use crate::problems::{FITTERS, Source, smooth};

@@ -7,7 +7,7 @@ use faer::Mat;
 use phalanx_codebook::{Codebook, Voting};
 use phalanx_hand::Pose;
 use phalanx_multiview::{Concatenation, Vocabulary};
-use phalanx_rvm::{KernelRidge, Regularisation, Model, Bandwidth};
+use phalanx_rvm::{Bandwidth, KernelRidge, Model, Regularisation};
 use phalanx_segmentation::Silhouette;
 use phalanx_shape_context::{BINS, Orientation, ShapeContexts};
 
@@ -244,7 +244,10 @@ fn training_samples(halves: &Halves) -> Result<Group> {
 /// Estimates by a model that keeps all of so many samples.
 fn kept_samples(halves: &Halves) -> Result<Group> {
     let x: Vec<f64> = halves.test.x.col(0).iter().copied().collect();
-    let ridge = KernelRidge { width: Bandwidth::Scatter(1.0), lambda: Regularisation::Given(0.1) };
+    let ridge = KernelRidge {
+        bandwidth: Bandwidth::Relative(1.0),
+        regularisation: Regularisation::Fixed(0.1),
+    };
     let pose = |count: usize| {
         let (train_x, train_y) = (first(&halves.train.x, count), first(&halves.train.y, count));
         let model = ridge.fit(train_x.as_ref(), train_y.as_ref())?.model;

@@ -6,7 +6,7 @@ mod lbfgs;
 use faer::{Mat, MatRef};
 
 use crate::basis::design::Design;
-use crate::basis::kernel::{Kernel, Bandwidth};
+use crate::basis::kernel::{Bandwidth, Kernel};
 use crate::data::check;
 use crate::data::problem::Problem;
 use crate::data::scaler::StandardScaler;
@@ -26,9 +26,9 @@ const IRRELEVANT: f64 = 1e-6;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum LengthScales {
     /// All of them.
-    All,
+    Shared,
     /// Each has its own: automatic relevance determination of inputs.
-    None,
+    Ard,
     /// Consecutive inputs, so many for each width; together all inputs.
     Blocks(Vec<usize>),
 }
@@ -52,11 +52,11 @@ pub enum LengthScales {
 /// let x = Mat::from_fn(3, 150, |i, t| ((t * (7 + 6 * i)) as f64 * 0.618).fract() * 4.0);
 /// let y = Mat::from_fn(1, 150, |_, t| (2.0 * x[(0, t)]).sin() + 0.3 * x[(1, t)]);
 ///
-/// let each = ArdRvm::default().fit(x.as_ref(), y.as_ref())?; // `LengthScales::None`
+/// let each = ArdRvm::default().fit(x.as_ref(), y.as_ref())?; // `LengthScales::Ard`
 /// let scales = each.model.length_scales().expect("Gaussians have them");
 /// assert!(scales[0] < scales[1]);
 ///
-/// let one = ArdRvm { tie: LengthScales::All, ..ArdRvm::default() };
+/// let one = ArdRvm { length_scales: LengthScales::Shared, ..ArdRvm::default() };
 /// let one = one.fit(x.as_ref(), y.as_ref())?;
 /// assert!(each.report.traces[0].objective.last() > one.report.traces[0].objective.last());
 /// # Ok(())
@@ -68,7 +68,7 @@ pub struct ArdRvm {
     /// The machine; its kernel, which must be Gaussian, is where the widths start.
     pub rvm: MultiOutputRvm,
     /// Which inputs share a width.
-    pub tie: LengthScales,
+    pub length_scales: LengthScales,
     /// Most turns, at least 1.
     pub rounds: usize,
     /// Most steps over the widths in a turn, at least 1.
@@ -77,7 +77,12 @@ pub struct ArdRvm {
 
 impl Default for ArdRvm {
     fn default() -> Self {
-        Self { rvm: MultiOutputRvm::default(), tie: LengthScales::None, rounds: 10, steps: 25 }
+        Self {
+            rvm: MultiOutputRvm::default(),
+            length_scales: LengthScales::Ard,
+            rounds: 10,
+            steps: 25,
+        }
     }
 }
 
@@ -102,14 +107,14 @@ impl ArdRvm {
         y: MatRef<'_, f64>,
         observe: &dyn Fn(Progress),
     ) -> Result<Fit> {
-        let width = self.start()?;
+        let bandwidth = self.start()?;
         let problem = Problem::new(x, y)?;
         let ties = self.ties(x.nrows())?;
         let inputs = problem.features();
         let mut learning = Learning {
             ties: inputs.iter().map(|&i| ties[i]).collect(),
             widths: vec![
-                width.magnitude(inputs.len()).ln();
+                bandwidth.magnitude(inputs.len()).ln();
                 ties.iter().max().map_or(0, |t| t + 1)
             ],
             vectors: Vectors::default(),
@@ -133,20 +138,20 @@ impl ArdRvm {
 
     /// The width to start from, once the settings are found in range.
     fn start(&self) -> Result<Bandwidth> {
-        let Kernel::Gaussian(width) = self.rvm.kernel else {
+        let Kernel::Gaussian(bandwidth) = self.rvm.kernel else {
             return Err(Error::NoWidth);
         };
         check::iterations(self.rounds)?;
         check::iterations(self.steps)?;
-        width.check()?;
-        Ok(width)
+        bandwidth.check()?;
+        Ok(bandwidth)
     }
 
     /// Which width each input has.
     fn ties(&self, inputs: usize) -> Result<Vec<usize>> {
-        Ok(match &self.tie {
-            LengthScales::All => vec![0; inputs],
-            LengthScales::None => (0..inputs).collect(),
+        Ok(match &self.length_scales {
+            LengthScales::Shared => vec![0; inputs],
+            LengthScales::Ard => (0..inputs).collect(),
             LengthScales::Blocks(blocks) => {
                 let of_all = blocks.iter().fold(0_usize, |sum, &block| sum.saturating_add(block));
                 check::length("inputs of all blocks", inputs, of_all)?;
@@ -187,7 +192,7 @@ impl Learning {
         }
         let inputs = StandardScaler::from_parts(self.problem.inputs.mean().to_vec(), scale)?;
         let scaled = Problem::scaled(inputs, x, y)?;
-        let design = Design::full(&scaled, Kernel::Gaussian(Bandwidth::Beta(1.0)))?;
+        let design = Design::full(&scaled, Kernel::Gaussian(Bandwidth::Gamma(1.0)))?;
         rvm.resume(&design, &self.vectors, observe)
     }
 

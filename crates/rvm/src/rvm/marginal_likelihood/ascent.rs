@@ -17,7 +17,7 @@ pub(crate) struct Ascent {
     /// Least noise variance, as a share of the target's variance, in (0, 1].
     pub(crate) noise_floor: f64,
     /// Nats that each active column must add; at least 0.
-    pub(crate) price: f64,
+    pub(crate) min_evidence_gain: f64,
     /// Steps that gain no more, in nats, are not taken; above 0.
     pub(crate) tolerance: f64,
     /// Most steps, at least 1.
@@ -32,9 +32,13 @@ impl Ascent {
     pub(crate) fn check(&self) -> Result<()> {
         check::positive("tolerance", self.tolerance)?;
         check::iterations(self.max_iterations)?;
-        if !(self.price >= 0.0 && self.price.is_finite()) {
+        if !(self.min_evidence_gain >= 0.0 && self.min_evidence_gain.is_finite()) {
             let requirement = "at least 0 and finite";
-            return Err(Error::Parameter { name: "price", value: self.price, requirement });
+            return Err(Error::Parameter {
+                name: "min_evidence_gain",
+                value: self.min_evidence_gain,
+                requirement,
+            });
         }
         if self.noise_floor > 0.0 && self.noise_floor <= 1.0 {
             return Ok(());
@@ -48,7 +52,7 @@ impl Ascent {
 
     /// No column is active.
     pub(crate) fn start<'a>(&self, targets: Targets<'a>) -> Result<MarginalLikelihood<'a>> {
-        MarginalLikelihood::new(targets, self.noise_floor, self.most, self.price)
+        MarginalLikelihood::new(targets, self.noise_floor, self.most, self.min_evidence_gain)
     }
 
     /// Climbs from where it is put, and then again from the best so far without some neighbours, which

@@ -34,7 +34,7 @@ pub(crate) struct MarginalLikelihood<'a> {
     /// Most active columns.
     most: usize,
     /// Nats that each active column must add to the evidence.
-    price: f64,
+    min_evidence_gain: f64,
     /// Noise variance σⱼ².
     noise: Vec<f64>,
     active: Active,
@@ -52,13 +52,18 @@ pub(crate) struct MarginalLikelihood<'a> {
 
 impl<'a> MarginalLikelihood<'a> {
     /// Starts with no column active.
-    pub(crate) fn new(targets: Targets<'a>, floor: f64, most: usize, price: f64) -> Result<Self> {
+    pub(crate) fn new(
+        targets: Targets<'a>,
+        floor: f64,
+        most: usize,
+        min_evidence_gain: f64,
+    ) -> Result<Self> {
         let (p, m) = targets.correlations.shape();
         let mut evidence = Self {
             targets,
             floor,
             most,
-            price,
+            min_evidence_gain,
             noise: vec![1.0; m],
             active: Active::none(p, m),
             sparsity: vec![0.0; p],
@@ -135,9 +140,9 @@ impl<'a> MarginalLikelihood<'a> {
         -0.5 * (normal + self.outputs() * self.log_determinant)
     }
 
-    /// What is climbed: the evidence less the price of the active columns.
+    /// What is climbed: the evidence less the min_evidence_gain of the active columns.
     fn objective(&self) -> f64 {
-        self.value() - self.price * self.active.len() as f64
+        self.value() - self.min_evidence_gain * self.active.len() as f64
     }
 
     /// Noise variance of each target.

@@ -3,8 +3,8 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use phalanx_rvm::{
-    Basis, Error, AugmentedRvm, KernelRidge, MultiOutputRvm, Posterior, Regressor, Ridge, StandardScaler,
-    RelevanceVectorMachine,
+    AugmentedRvm, Basis, Error, KernelRidge, MultiOutputRvm, Posterior, Regressor,
+    RelevanceVectorMachine, Ridge, StandardScaler,
 };
 use proptest::prelude::*;
 

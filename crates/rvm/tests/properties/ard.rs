@@ -1,7 +1,7 @@
 //! Learnt widths from outside: their evidence, and what they find irrelevant.
 
 use faer::Mat;
-use phalanx_rvm::{Error, Kernel, ArdRvm, MultiOutputRvm, LengthScales};
+use phalanx_rvm::{ArdRvm, Error, Kernel, LengthScales, MultiOutputRvm};
 use proptest::prelude::*;
 
 use crate::problems::{Source, smooth};
@@ -13,9 +13,9 @@ proptest! {
     #[test]
     fn the_evidence_never_falls(seed in any::<u64>(), tie in 0..3) {
         let (x, y) = smooth(seed, 4, 2, 40);
-        let tie = [LengthScales::All, LengthScales::None, LengthScales::Blocks(vec![1, 3])][tie as usize].clone();
-        let rvm = MultiOutputRvm { price: 0.0, ..MultiOutputRvm::default() };
-        let fit = ArdRvm { rvm, tie, ..ArdRvm::default() }.fit(x.as_ref(), y.as_ref())?;
+        let tie = [LengthScales::Shared, LengthScales::Ard, LengthScales::Blocks(vec![1, 3])][tie as usize].clone();
+        let rvm = MultiOutputRvm { min_evidence_gain: 0.0, ..MultiOutputRvm::default() };
+        let fit = ArdRvm { rvm, length_scales: tie, ..ArdRvm::default() }.fit(x.as_ref(), y.as_ref())?;
         let evidence = &fit.report.traces[0].objective;
         prop_assert!(evidence.is_sorted_by(|a, b| *b >= a - 1e-6 * a.abs().max(1.0)), "{evidence:?}");
         let fixed = rvm.fit(x.as_ref(), y.as_ref())?.report.traces[0].objective.last().copied();
@@ -58,7 +58,7 @@ fn what_cannot_be_learnt_is_named() {
     let learn = |learnt: ArdRvm| learnt.fit(x.as_ref(), y.as_ref()).unwrap_err();
     assert_eq!(learn(ArdRvm { rvm: linear, ..ArdRvm::default() }), Error::NoWidth);
     let blocks = LengthScales::Blocks(vec![2, 3]);
-    let error = learn(ArdRvm { tie: blocks, ..ArdRvm::default() });
+    let error = learn(ArdRvm { length_scales: blocks, ..ArdRvm::default() });
     assert_eq!(error, Error::Shape { what: "inputs of all blocks", expected: 6, found: 5 });
     let error = learn(ArdRvm { rounds: 0, ..ArdRvm::default() });
     assert!(matches!(error, Error::Parameter { name: "max_iterations", .. }));

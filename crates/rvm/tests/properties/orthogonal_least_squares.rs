@@ -1,7 +1,7 @@
 //! Forward selection against a search that solves every candidate's least squares problem.
 
 use faer::Mat;
-use phalanx_rvm::{OrthogonalLeastSquares, Kernel, StandardScaler};
+use phalanx_rvm::{Kernel, OrthogonalLeastSquares, StandardScaler};
 use proptest::prelude::*;
 
 use crate::problems::{rows, smooth, solve};

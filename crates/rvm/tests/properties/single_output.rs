@@ -1,7 +1,7 @@
 //! Tipping's machine from outside: its evidence, its sparsity, its honesty.
 
 use faer::Mat;
-use phalanx_rvm::{Kernel, Regressor, RelevanceVectorMachine, Bandwidth};
+use phalanx_rvm::{Bandwidth, Kernel, Regressor, RelevanceVectorMachine};
 use proptest::prelude::*;
 
 use crate::problems::{GAUSSIAN, Source, smooth};
@@ -14,7 +14,7 @@ proptest! {
     fn the_evidence_never_falls(seed in any::<u64>(), linear in any::<bool>()) {
         let (x, y) = smooth(seed, 8, 3, 50);
         let kernel = if linear { Kernel::Linear } else { GAUSSIAN };
-        let fit = RelevanceVectorMachine { kernel, price: 0.0, ..RelevanceVectorMachine::default() }.fit(x.as_ref(), y.as_ref())?;
+        let fit = RelevanceVectorMachine { kernel, min_evidence_gain: 0.0, ..RelevanceVectorMachine::default() }.fit(x.as_ref(), y.as_ref())?;
         prop_assert!(fit.report.converged);
         for trace in &fit.report.traces {
             let evidence = &trace.objective;
@@ -27,7 +27,7 @@ proptest! {
     fn restarts_find_no_less(seed in any::<u64>()) {
         let (x, y) = smooth(seed, 3, 1, 60);
         let evidence = |restarts| {
-            let tipping = RelevanceVectorMachine { kernel: GAUSSIAN, price: 0.0, restarts, ..RelevanceVectorMachine::default() };
+            let tipping = RelevanceVectorMachine { kernel: GAUSSIAN, min_evidence_gain: 0.0, restarts, ..RelevanceVectorMachine::default() };
             let fit = tipping.fit(x.as_ref(), y.as_ref())?;
             Ok::<_, phalanx_rvm::Error>(fit.report.traces[0].objective.last().copied())
         };
@@ -37,7 +37,7 @@ proptest! {
     #[test]
     fn a_price_is_paid_by_fewer_columns(seed in any::<u64>()) {
         let (x, y) = smooth(seed, 3, 1, 60);
-        let fit = |price| RelevanceVectorMachine { kernel: GAUSSIAN, price, ..RelevanceVectorMachine::default() }.fit(x.as_ref(), y.as_ref());
+        let fit = |price| RelevanceVectorMachine { kernel: GAUSSIAN, min_evidence_gain: price, ..RelevanceVectorMachine::default() }.fit(x.as_ref(), y.as_ref());
         let (dear, none) = (fit(5.0)?, fit(1e6)?);
         prop_assert!(dear.model.kept_samples().len() <= fit(0.0)?.model.kept_samples().len());
         // With every column pruned the model is the mean.
@@ -53,7 +53,7 @@ proptest! {
         let half = source.matrix(2, 30);
         let x = Mat::from_fn(2, 60, |i, t| half[(i, t % 30)]);
         let y = Mat::from_fn(1, 60, |_, t| (3.0 * x[(0, t)]).sin() * x[(1, t)]);
-        let kernel = Kernel::Gaussian(Bandwidth::Scatter(c));
+        let kernel = Kernel::Gaussian(Bandwidth::Relative(c));
         let model = RelevanceVectorMachine { kernel, ..RelevanceVectorMachine::default() }.fit(x.as_ref(), y.as_ref())?.model;
         let (mean, std) = model.predict_with_std(x.as_ref())?;
         prop_assert!(mean.norm_max().is_finite() && std.norm_max().is_finite());
@@ -67,8 +67,11 @@ fn sinc_is_learnt_from_few_vectors() {
     let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
     let noise: Vec<f64> = (0..200).map(|_| 0.1 * 3_f64.sqrt() * source.uniform()).collect();
     let y = Mat::from_fn(1, 200, |_, t| sinc(x[(0, t)]) + noise[t]);
-    let kernel = Kernel::Gaussian(Bandwidth::Scatter(7.0));
-    let model = RelevanceVectorMachine { kernel, ..RelevanceVectorMachine::default() }.fit(x.as_ref(), y.as_ref()).unwrap().model;
+    let kernel = Kernel::Gaussian(Bandwidth::Relative(7.0));
+    let model = RelevanceVectorMachine { kernel, ..RelevanceVectorMachine::default() }
+        .fit(x.as_ref(), y.as_ref())
+        .unwrap()
+        .model;
     assert!(model.kept_samples().len() <= 12, "{:?}", model.kept_samples());
     assert!((model.noise()[0] / 0.1 - 1.0).abs() < 0.15, "{:?}", model.noise());
     let mean = model.predict(x.as_ref()).unwrap();
@@ -82,7 +85,8 @@ fn inputs_that_say_nothing_are_mostly_dropped() {
     let mut source = Source::new(9);
     let x = source.matrix(30, 300);
     let y = Mat::from_fn(1, 300, |_, t| 2.0 * x[(3, t)] - x[(17, t)] + 0.5 * source.uniform());
-    let fit = RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() };
+    let fit =
+        RelevanceVectorMachine { kernel: Kernel::Linear, ..RelevanceVectorMachine::default() };
     let model = fit.fit(x.as_ref(), y.as_ref()).unwrap().model;
     let kept = model.selected_features();
     assert!(kept.contains(&3) && kept.contains(&17) && kept.len() <= 16, "{kept:?}");

@@ -1,7 +1,7 @@
 //! Hypotheses around a prediction: what they share, what they cover, what they cannot be made of.
 
 use faer::Mat;
-use phalanx_rvm::{ResidualKde, ResidualKdeParts, Error, Hypothesis};
+use phalanx_rvm::{Error, Hypothesis, ResidualKde, ResidualKdeParts};
 use proptest::prelude::*;
 
 use crate::problems::Source;
@@ -111,8 +111,7 @@ fn two_answers_are_told_apart() {
         let side = if i % 2 == 0 { 3.0 } else { -3.0 };
         predictions[(j, i)] + if j == 0 { side } else { 0.0 } + 0.1 * source.uniform()
     });
-    let density =
-        ResidualKde::fit(predictions.as_ref(), targets.as_ref(), &[1.0; 2], 100).unwrap();
+    let density = ResidualKde::fit(predictions.as_ref(), targets.as_ref(), &[1.0; 2], 100).unwrap();
     let hypotheses = density.hypotheses(&[0.0, 0.0], 3).unwrap();
     assert_eq!(hypotheses.len(), 3);
     assert!(hypotheses[0].weight < 1e-12, "nothing is near the mean of the two");
@@ -130,9 +129,8 @@ type Change = fn(&mut ResidualKdeParts);
 fn what_cannot_be_one_is_named() {
     let mut source = Source::new(8);
     let (p, t) = (source.matrix(2, 9), source.matrix(2, 9));
-    let fit = |units: &[f64], neighbours| {
-        ResidualKde::fit(p.as_ref(), t.as_ref(), units, neighbours)
-    };
+    let fit =
+        |units: &[f64], neighbours| ResidualKde::fit(p.as_ref(), t.as_ref(), units, neighbours);
     assert!(matches!(fit(&[1.0], 4), Err(Error::Shape { what: "units", .. })));
     assert!(matches!(fit(&[1.0, 0.0], 4), Err(Error::Parameter { name: "unit", .. })));
     assert!(matches!(fit(&[1.0; 2], 10), Err(Error::Parameter { name: "neighbours", .. })));

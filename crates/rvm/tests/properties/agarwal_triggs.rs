@@ -1,7 +1,9 @@
 //! Bridges against a literal transcription of the paper's section 4.
 
 use faer::{Mat, MatRef};
-use phalanx_rvm::{AgarwalTriggs, TwoStageSelection, Kernel, Regressor, StandardScaler, Stop, Bandwidth};
+use phalanx_rvm::{
+    AgarwalTriggs, Bandwidth, Kernel, Regressor, StandardScaler, Stop, TwoStageSelection,
+};
 use proptest::prelude::*;
 
 use crate::problems::{GAUSSIAN, close, rows, smooth, solve};
@@ -145,7 +147,7 @@ fn everything_pruned_leaves_the_mean() {
 fn the_sign_of_beta_does_not_matter() {
     let (x, y) = smooth(6, 3, 2, 25);
     let fit = |beta| {
-        let kernel = Kernel::Gaussian(Bandwidth::Beta(beta));
+        let kernel = Kernel::Gaussian(Bandwidth::Gamma(beta));
         AgarwalTriggs { kernel, ..AgarwalTriggs::default() }.fit(x.as_ref(), y.as_ref()).unwrap()
     };
     assert_eq!(fit(0.2), fit(-0.2));

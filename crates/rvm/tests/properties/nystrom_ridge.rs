@@ -2,8 +2,8 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    Kernel, KernelRidge, Regularisation, NystromRidge, NystromRegularisation, PilotSample, Regressor, StandardScaler, SufficientStatistics, Bandwidth,
-    random_subset,
+    Bandwidth, Kernel, KernelRidge, NystromRegularisation, NystromRidge, PilotSample, Regressor,
+    Regularisation, StandardScaler, SufficientStatistics, random_subset,
 };
 use proptest::prelude::*;
 
@@ -15,7 +15,11 @@ const BETA: f64 = 0.2;
 const JITTER: f64 = 1e-6;
 
 fn nystrom(penalty: NystromRegularisation) -> NystromRidge {
-    NystromRidge { width: Bandwidth::Beta(BETA), penalty, ..NystromRidge::default() }
+    NystromRidge {
+        bandwidth: Bandwidth::Gamma(BETA),
+        regularisation: penalty,
+        ..NystromRidge::default()
+    }
 }
 
 /// exp(−β‖a − b‖²) for each column a of the one and b of the other.
@@ -53,9 +57,9 @@ proptest! {
     #[test]
     fn all_samples_as_centres_are_kernel_ridge(seed in any::<u64>(), lambda in 0.01..2.0_f64) {
         let (x, y) = smooth(seed, 3, 2, 40);
-        let dense = KernelRidge { width: Bandwidth::Beta(BETA), lambda: Regularisation::Given(lambda) };
+        let dense = KernelRidge { bandwidth: Bandwidth::Gamma(BETA), regularisation: Regularisation::Fixed(lambda) };
         let expected = dense.fit(x.as_ref(), y.as_ref())?.model.predict(x.as_ref())?;
-        let fit = nystrom(NystromRegularisation::Given(lambda)).fit(x.as_ref(), y.as_ref())?;
+        let fit = nystrom(NystromRegularisation::Fixed(lambda)).fit(x.as_ref(), y.as_ref())?;
         let difference = fit.model.predict(x.as_ref())? - expected;
         let targets = centred(y);
         for j in 0..2 {
@@ -84,7 +88,7 @@ proptest! {
             new_phi.row_mut(i).iter_mut().for_each(|v| *v -= mean);
         }
         let expected = outputs.invert((weights.transpose() * &new_phi).as_ref())?;
-        let model = nystrom(NystromRegularisation::Given(lambda)).fit_on(x.as_ref(), y.as_ref(), &chosen)?.model;
+        let model = nystrom(NystromRegularisation::Fixed(lambda)).fit_on(x.as_ref(), y.as_ref(), &chosen)?.model;
         let (mean, std) = model.predict_with_std(new.as_ref())?;
         prop_assert_eq!(model.kept_samples(), chosen);
         prop_assert!(close(mean.as_ref(), expected.as_ref(), 1e-5));
@@ -119,13 +123,13 @@ proptest! {
             let leverage = (hat.diagonal().column_vector().sum() + 1.0) / n as f64;
             residuals.squared_norm_l2() / ((1.0 - leverage).powi(2) * (n * m) as f64)
         }).collect::<Vec<f64>>();
-        let fit = nystrom(NystromRegularisation::CrossValidated(grid.clone())).fit_on(x.as_ref(), y.as_ref(), &chosen)?;
+        let fit = nystrom(NystromRegularisation::Gcv(grid.clone())).fit_on(x.as_ref(), y.as_ref(), &chosen)?;
         for (found, expected) in fit.report.traces[0].objective.iter().zip(&expected) {
             prop_assert!((found - expected).abs() < 1e-5 * expected, "{found} {expected}");
         }
         let best = (0..grid.len()).min_by(|&a, &b| expected[a].total_cmp(&expected[b]));
         prop_assert_eq!(fit.report.penalty, best.map(|b| grid[b]));
-        let given = nystrom(NystromRegularisation::Given(fit.report.penalty.unwrap()));
+        let given = nystrom(NystromRegularisation::Fixed(fit.report.penalty.unwrap()));
         prop_assert_eq!(given.fit_on(x.as_ref(), y.as_ref(), &chosen)?.model, fit.model);
     }
 }
@@ -164,8 +168,8 @@ fn repeated_centres_are_solved() {
     let (x2, y2) = (pick(&x), pick(&y));
     let samples: Vec<usize> = (0..60).collect();
     let pilot = PilotSample { x: x2.as_ref(), y: y2.as_ref(), samples: &samples };
-    let fitter = nystrom(NystromRegularisation::Given(0.1));
-    let doubled = phalanx_rvm::BasisSpec::new(&pilot, Kernel::Gaussian(fitter.width)).unwrap();
+    let fitter = nystrom(NystromRegularisation::Fixed(0.1));
+    let doubled = phalanx_rvm::BasisSpec::new(&pilot, Kernel::Gaussian(fitter.bandwidth)).unwrap();
     let mut sums = SufficientStatistics::new(&doubled);
     sums.add(&doubled, x.as_ref(), y.as_ref()).unwrap();
     let found = fitter.fit_sums(&doubled, &sums).unwrap().model.predict(x.as_ref()).unwrap();

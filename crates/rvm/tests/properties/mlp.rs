@@ -2,8 +2,8 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    FeatureBlock, BlockPca, Error, Fit, Mlp, PcaMlp, MlpParts, MlpTrainer,
-    AffineMap, AffineMapParts, Regressor, Scratch, random_subset,
+    AffineMap, AffineMapParts, BlockPca, Error, FeatureBlock, Fit, Mlp, MlpParts, MlpTrainer,
+    PcaMlp, Regressor, Scratch, random_subset,
 };
 use proptest::prelude::*;
 

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use faer::Mat;
-use phalanx_rvm::{Error, Kernel, Model, MultiOutputRvm, Regressor, Ridge, RelevanceVectorMachine};
+use phalanx_rvm::{Error, Kernel, Model, MultiOutputRvm, Regressor, RelevanceVectorMachine, Ridge};
 
 use crate::problems::{close, smooth};
 
@@ -12,7 +12,8 @@ use crate::problems::{close, smooth};
 fn models() -> (Mat<f64>, Vec<Model>) {
     let (x, y) = smooth(11, 5, 2, 40);
     let (x, y) = (x.as_ref(), y.as_ref());
-    let pruned = RelevanceVectorMachine { price: 1e9, ..RelevanceVectorMachine::default() };
+    let pruned =
+        RelevanceVectorMachine { min_evidence_gain: 1e9, ..RelevanceVectorMachine::default() };
     let fits = [
         Ridge { kernel: Kernel::Linear, ..Ridge::default() }.fit(x, y),
         MultiOutputRvm::default().fit(x, y),

@@ -2,8 +2,10 @@
 
 use phalanx_rvm::faer::{Mat, MatRef};
 use phalanx_rvm::{
-    FeatureBlock, BasisSpec, PredictiveDeviation, Error, ExpectedGradientOuterProduct, TargetGroup, LearnedMetric, NystromRidge, NystromRegularisation, PilotSample,
-    GroupedRegressor, AffineMap, AffineMapParts, Regressor, Scratch, SufficientStatistics, Bandwidth, random_subset,
+    AffineMap, AffineMapParts, Bandwidth, BasisSpec, Error, ExpectedGradientOuterProduct,
+    FeatureBlock, GroupedRegressor, LearnedMetric, NystromRegularisation, NystromRidge,
+    PilotSample, PredictiveDeviation, Regressor, Scratch, SufficientStatistics, TargetGroup,
+    random_subset,
 };
 use proptest::prelude::*;
 use rand_core::{Rng, SeedableRng};
@@ -30,9 +32,12 @@ fn targets(x: MatRef<'_, f64>) -> Mat<f64> {
 }
 
 fn learner(rank: usize, rounds: usize) -> ExpectedGradientOuterProduct {
-    let penalty = NystromRegularisation::CrossValidated(vec![1e-4, 1e-3, 1e-2, 0.1]);
-    let regression =
-        NystromRidge { width: Bandwidth::Scatter(3.0), deviation: PredictiveDeviation::CrossValidated, penalty };
+    let penalty = NystromRegularisation::Gcv(vec![1e-4, 1e-3, 1e-2, 0.1]);
+    let regression = NystromRidge {
+        bandwidth: Bandwidth::Relative(3.0),
+        deviation: PredictiveDeviation::Gcv,
+        regularisation: penalty,
+    };
     ExpectedGradientOuterProduct { regression, rounds, centres: 200, gradients: 100, rank }
 }
 
@@ -80,7 +85,7 @@ fn fit(metric: &LearnedMetric, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Groupe
         let y_pilot = y.subcols(0, 150);
         let pilot = PilotSample { x: x.subcols(0, 150), y: y_pilot, samples: &samples };
         let regression = learner(3, 1).regression;
-        let columns = BasisSpec::in_proportion(&pilot, regression.width).unwrap();
+        let columns = BasisSpec::in_proportion(&pilot, regression.bandwidth).unwrap();
         let mut sums = SufficientStatistics::new(&columns);
         sums.add(&columns, x, y.as_ref()).unwrap();
         regression.fit_sums(&columns, &sums).unwrap().model
@@ -141,9 +146,10 @@ fn targets_that_do_not_vary_read_nothing() {
 fn what_cannot_be_learnt_from_is_refused_by_name() {
     let x = uniform(INPUTS, 60, 4);
     let y = targets(x.as_ref());
-    let learn = |learner: ExpectedGradientOuterProduct, blocks: &[FeatureBlock], groups: &[Vec<usize>]| {
-        learner.fit(x.as_ref(), y.as_ref(), blocks, groups).unwrap_err()
-    };
+    let learn =
+        |learner: ExpectedGradientOuterProduct, blocks: &[FeatureBlock], groups: &[Vec<usize>]| {
+            learner.fit(x.as_ref(), y.as_ref(), blocks, groups).unwrap_err()
+        };
     let short = [FeatureBlock { inputs: 7, components: 2 }];
     assert!(matches!(
         learn(learner(3, 1), &short, &[vec![0]]),

@@ -4,7 +4,8 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    BasisSpec, Kernel, MultiOutputRvm, PilotSample, Regressor, StandardScaler, SufficientStatistics, RelevanceVectorMachine, Bandwidth,
+    Bandwidth, BasisSpec, Kernel, MultiOutputRvm, PilotSample, Regressor, RelevanceVectorMachine,
+    StandardScaler, SufficientStatistics,
 };
 use proptest::prelude::*;
 
@@ -106,7 +107,7 @@ proptest! {
         let (x, y) = smooth(seed, 7, 3, 20);
         let mut slow = Slow::new(x.as_ref(), y.as_ref())?;
         let rvm =
-            MultiOutputRvm { kernel: Kernel::Linear, price: 0.0, ..MultiOutputRvm::default() };
+            MultiOutputRvm { kernel: Kernel::Linear, min_evidence_gain: 0.0, ..MultiOutputRvm::default() };
         let fit = rvm.fit(x.as_ref(), y.as_ref())?;
         for &fast in &fit.report.traces[0].objective {
             let evidence = slow.climb(rvm.tolerance);
@@ -122,7 +123,7 @@ proptest! {
     fn the_evidence_never_falls(seed in any::<u64>(), most in prop::option::of(1..10_usize)) {
         let (x, y) = smooth(seed, 5, 3, 60);
         let (price, restarts) = (0.0, 4);
-        let rvm = MultiOutputRvm { kernel: GAUSSIAN, most, price, restarts, ..Default::default() };
+        let rvm = MultiOutputRvm { kernel: GAUSSIAN, max_columns: most, min_evidence_gain: price, restarts, ..Default::default() };
         let fit = rvm.fit(x.as_ref(), y.as_ref())?;
         prop_assert!(fit.report.converged);
         prop_assert!(fit.model.kept_samples().len() <= most.unwrap_or(60));
@@ -148,8 +149,8 @@ proptest! {
         let twice = rows(y.as_ref(), &[0, 1, 0, 1]);
         let rvm = MultiOutputRvm { kernel: Kernel::Linear, ..MultiOutputRvm::default() };
         // Twice the evidence asks for twice the tolerance and the price.
-        let (tolerance, price) = (2.0 * rvm.tolerance, 2.0 * rvm.price);
-        let doubled = MultiOutputRvm { tolerance, price, ..rvm };
+        let (tolerance, price) = (2.0 * rvm.tolerance, 2.0 * rvm.min_evidence_gain);
+        let doubled = MultiOutputRvm { tolerance, min_evidence_gain: price, ..rvm };
         let (mean, std) = rvm.fit(x.as_ref(), y.as_ref())?.model.predict_with_std(x.as_ref())?;
         let again = doubled.fit(x.as_ref(), twice.as_ref())?.model;
         let (mean_again, std_again) = again.predict_with_std(x.as_ref())?;
@@ -163,7 +164,7 @@ proptest! {
         let half = source.matrix(2, 30);
         let x = Mat::from_fn(2, 60, |i, t| half[(i, t % 30)]);
         let y = Mat::from_fn(2, 60, |j, t| (3.0 * x[(j, t)]).sin() * x[(1 - j, t)]);
-        let kernel = Kernel::Gaussian(Bandwidth::Scatter(c));
+        let kernel = Kernel::Gaussian(Bandwidth::Relative(c));
         let rvm = MultiOutputRvm { kernel, ..MultiOutputRvm::default() };
         let model = rvm.fit(x.as_ref(), y.as_ref())?.model;
         let (mean, std) = model.predict_with_std(x.as_ref())?;
