@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape};
-use phalanx_rvm::{Columns, Components, Metric, Pilot, random_subset};
+use phalanx_rvm::{BasisSpec, BlockPca, LearnedMetric, PilotSample, random_subset};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -145,8 +145,8 @@ impl Basis {
             }
             (regressor, reading) => match (regressor.summed(), reading) {
                 (Some(kernel), Reading::Whole) => {
-                    let pilot = Pilot { x, y, samples: &self.pilot };
-                    Ok(vec![Columns::new(&pilot, kernel)?])
+                    let pilot = PilotSample { x, y, samples: &self.pilot };
+                    Ok(vec![BasisSpec::new(&pilot, kernel)?])
                 }
                 _ => Err(Error::FileContent {
                     what: "training part",

@@ -4,7 +4,7 @@ use glam::DVec3;
 use image::GrayImage;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
-use phalanx_rvm::ConditionalDensity;
+use phalanx_rvm::ResidualKde;
 use phalanx_segmentation::Silhouette;
 
 use crate::global_pose::place;

@@ -16,7 +16,7 @@ use crate::{Error, Progress, Regression, Result};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Gathered {
     /// Sums over the columns of all numbers of the pose, or over those of each group.
-    Sums(Vec<Sums>),
+    Sums(Vec<SufficientStatistics>),
     /// What the regressor reads of each sample, by the number of its block of scenes.
     Samples(BTreeMap<usize, Samples<f32>>),
     /// The whole descriptor of each sample, likewise.
@@ -81,9 +81,9 @@ impl<T> Samples<T> {
 
 impl Gathered {
     /// Nothing yet, for a regressor with these columns.
-    pub(crate) fn new(basis: &Basis, columns: &[Columns]) -> Self {
+    pub(crate) fn new(basis: &Basis, columns: &[BasisSpec]) -> Self {
         match basis.regressor.kept() {
-            Kept::Sums => Self::Sums(columns.iter().map(Sums::new).collect()),
+            Kept::Sums => Self::Sums(columns.iter().map(SufficientStatistics::new).collect()),
             Kept::Readings => Self::Samples(BTreeMap::new()),
             Kept::Descriptors { .. } => Self::Descriptors(BTreeMap::new()),
         }

@@ -3,9 +3,10 @@
 use faer::{Mat, MatRef};
 use phalanx_hand::{Digit, Dof};
 use phalanx_rvm::{
-    Block, Bridges, Cascade, Columns, Components, Fit, ForwardSelection, GradientMetric, Kernel,
-    KernelRidge, Metric, MultivariateRvm, NetworkOnComponents, Nystrom, Perceptron, Pilot, Ridge,
-    Sums, Tipping, random_subset,
+    AgarwalTriggs, BasisSpec, BlockPca, ExpectedGradientOuterProduct, FeatureBlock, Fit, Kernel,
+    KernelRidge, LearnedMetric, MlpTrainer, MultiOutputRvm, NystromRidge, OrthogonalLeastSquares,
+    PcaMlp, PilotSample, RelevanceVectorMachine, Ridge, SufficientStatistics, TwoStageSelection,
+    random_subset,
 };
 use serde::{Deserialize, Serialize};
 
@@ -53,7 +54,7 @@ pub struct LearntMetric {
     /// Principal components of each view's code, and of what is beside it, at most.
     pub components: usize,
     /// How distances are learnt.
-    pub metric: GradientMetric,
+    pub metric: ExpectedGradientOuterProduct,
     /// Gaussians of each digit's regression, at most; some of the pilot's, chosen at random.
     pub centres: usize,
     /// The regression.
@@ -145,10 +146,10 @@ impl Regressor {
             Self::Network(_) => Kept::Readings,
             Self::KernelRidge(_) => dense("dense kernel regression"),
             Self::Tipping(fitter) if fitter.kernel != Kernel::Linear => {
-                dense("Tipping's machine with Gaussian kernels")
+                dense("the relevance vector machine with Gaussian kernels")
             }
             Self::Tipping(_) => {
-                Kept::Descriptors { regressor: "Tipping's machine", most: usize::MAX }
+                Kept::Descriptors { regressor: "the relevance vector machine", most: usize::MAX }
             }
             // Features are selected before samples can be summed.
             Self::Cascade(_) => Kept::Descriptors { regressor: "both", most: usize::MAX },
@@ -258,14 +259,14 @@ impl Regressor {
             Self::Bridges(fitter) => Some(fitter.kernel),
             Self::Forward(fitter) => Some(fitter.kernel),
             Self::MultivariateRvm(fitter) => Some(fitter.kernel),
-            Self::Nystrom(fitter) => Some(Kernel::Gaussian(fitter.width)),
-            Self::LearntMetric(fitter) => Some(Kernel::Gaussian(fitter.regression.width)),
+            Self::Nystrom(fitter) => Some(Kernel::Gaussian(fitter.bandwidth)),
+            Self::LearntMetric(fitter) => Some(Kernel::Gaussian(fitter.regression.bandwidth)),
             Self::Cascade(_) | Self::Tipping(_) | Self::KernelRidge(_) | Self::Network(_) => None,
         }
     }
 
     /// Fits sums over the columns of [`summed`](Self::summed).
-    pub(crate) fn fit_sums(&self, columns: &Columns, sums: &Sums) -> Result<Fit> {
+    pub(crate) fn fit_sums(&self, columns: &BasisSpec, sums: &SufficientStatistics) -> Result<Fit> {
         Ok(match self {
             Self::Ridge(fitter) => fitter.fit_sums(columns, sums)?,
             Self::Bridges(fitter) => fitter.fit_sums(columns, sums)?,
@@ -292,7 +293,7 @@ impl Regressor {
             return Ok(fitter.fit_samples(first, &gaussian, &sums(&gaussian, x, y)?)?);
         }
         let expected = Error::Mismatch { part: "sums", found: 0, expected: 1 };
-        let columns = Columns::new(&pilot, self.summed().ok_or(expected)?)?;
+        let columns = BasisSpec::new(&pilot, self.summed().ok_or(expected)?)?;
         self.fit_sums(&columns, &sums(&columns, x, y)?)
     }
 }

@@ -6,7 +6,10 @@ use phalanx::{
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, coupled_pose};
-use phalanx_rvm::{Bridges, Cascade, Kernel, KernelRidge, Lambda, Nystrom, Stop, Width};
+use phalanx_rvm::{
+    AgarwalTriggs, Bandwidth, Kernel, KernelRidge, NystromRidge, Regularisation, Stop,
+    TwoStageSelection,
+};
 
 use crate::desk::{self, top};
 
@@ -110,7 +113,7 @@ fn parts_of_other_trainings_are_refused() {
 #[test]
 fn more_samples_than_a_regressor_keeps_are_refused_before_any_work() {
     for (regressor, count) in [
-        (Regressor::Cascade(Cascade::default()), usize::MAX / 2),
+        (Regressor::Cascade(TwoStageSelection::default()), usize::MAX / 2),
         (Regressor::KernelRidge(KernelRidge::default()), 14_000),
     ] {
         let error = Random::new(count).shard(&regressor, 1, 1).unwrap_err();
@@ -122,8 +125,8 @@ fn more_samples_than_a_regressor_keeps_are_refused_before_any_work() {
 fn what_keeps_its_samples_learns_in_shards_too() {
     let scenes = Random::new(1100);
     let dense = Regressor::KernelRidge(KernelRidge {
-        width: Width::Scatter(0.5),
-        lambda: Lambda::Given(0.01),
+        bandwidth: Bandwidth::Relative(0.5),
+        regularisation: Regularisation::Fixed(0.01),
     });
     let shard = |index, count| {
         let part = scenes.shard(&dense, index, count).unwrap();
