@@ -16,6 +16,7 @@ mod headline;
 mod held_out;
 mod hypotheses;
 mod lab;
+mod layers;
 mod memory;
 mod merge;
 mod metrics;
@@ -107,6 +108,8 @@ enum Command {
     Pictures(pictures::Arguments),
     /// Check the crates as those get them who depend on one alone: licences, features, packages.
     CheckCrates(check_crates::Arguments),
+    /// Check that the arrows between the files of each crate go down.
+    Layers,
     /// Try the property tests on other cases than the test command does.
     Properties(properties::Arguments),
     /// Feed damaged files to everything that reads files.
@@ -160,6 +163,7 @@ fn start(command: &Command) -> Result<ExitCode> {
         Command::TwoCamera(arguments) => two_camera::run(arguments)?,
         Command::Pictures(arguments) => pictures::run(arguments)?,
         Command::CheckCrates(arguments) => check_crates::run(arguments)?,
+        Command::Layers => layers::run()?,
         Command::Properties(arguments) => return properties::run(arguments),
         Command::Fuzz(arguments) => fuzz::run(arguments)?,
         Command::BenchPeers(arguments) => bench_peers::run(arguments)?,

@@ -361,3 +361,26 @@ fn cameras_are_not_turned_to_nowhere() {
         assert!(matches!(turned, Err(Error::VirtualAxis { .. })), "{turned:?}");
     }
 }
+
+/// Found by `undistort_finds_whatever_distort_made`: the first step from the middle leaps to the fold.
+#[test]
+fn points_near_the_fold_are_found() {
+    let lens = |k1, k2, k3, p1, p2| Distortion { k1, k2, p1, p2, k3, ..Distortion::NONE };
+    for (lens, point) in [
+        (
+            lens(0.119061038, 0.0182310086, -0.0191690892, 0.0037042033, -0.001380104),
+            DVec2::new(0.519179263, -1.344453055),
+        ),
+        (
+            lens(0.228298087, -0.0630810844, -0.0023158309, -0.0024191588, 0.0014043607),
+            DVec2::new(-0.766029576, 1.224257758),
+        ),
+        (
+            lens(0.2506077353, -0.0784652102, -0.0125913977, -0.0029285589, 0.0),
+            DVec2::new(-0.280624459, 1.253373002),
+        ),
+    ] {
+        let back = lens.undistort(lens.distort(point)).expect("short of the fold");
+        assert!((back - point).length() < 1e-9, "{back} is not {point}");
+    }
+}

@@ -1,13 +1,11 @@
 //! How far a campaign has come, and what it found.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
-use super::Arguments;
 use super::discovery::Property;
 use super::trial::{self, Draw};
 use crate::files;
@@ -133,32 +131,30 @@ impl Campaign {
     }
 
     /// What was tried and what was found, for people.
-    pub(super) fn report(&self, properties: &[Property], arguments: &Arguments) -> String {
+    pub(super) fn report(&self, properties: &[Property], seeds: &[u32], cases: u32) -> String {
         let mut page = String::new();
-        let mut say = |line: std::fmt::Arguments| writeln!(page, "{line}").expect("to a string");
-        for &seed in &arguments.seed {
-            let progress: Vec<Progress> =
-                properties.iter().map(|p| self.progress(&p.to_string(), seed)).collect();
-            let complete =
-                progress.iter().filter(|p| p.cases > 0 && p.cases >= p.wanted(arguments.cases));
-            let slow = progress.iter().filter(|p| p.is_slow()).count();
-            let cases: u64 = progress.iter().map(|p| u64::from(p.cases)).sum();
-            say(format_args!(
-                "seed {seed}: {} of {} properties had their {} cases ({slow} slow ones a tenth), {cases} in all",
-                complete.count(),
+        for &seed in seeds {
+            let all = properties.iter().map(|property| self.progress(&property.to_string(), seed));
+            let tried: Vec<Progress> = all.filter(|progress| progress.cases > 0).collect();
+            let complete = tried.iter().filter(|progress| progress.cases >= progress.wanted(cases));
+            let slow = tried.iter().filter(|progress| progress.is_slow());
+            let drawn: u64 = tried.iter().map(|progress| u64::from(progress.cases)).sum();
+            page += &format!(
+                "seed {seed}: {} of {} properties tried, {} of them on all {cases} cases \
+                 (a tenth of the {} slow ones); {drawn} cases\n",
+                tried.len(),
                 properties.len(),
-                arguments.cases,
-            ));
+                complete.count(),
+                slow.count(),
+            );
         }
-        for (name, Find { draw, message }) in &self.state.finds {
-            let Draw { rng_seed, cases } = draw;
-            say(format_args!("\nfailed: {name}\n{message}"));
-            say(format_args!(
-                "again: PROPTEST_RNG_SEED={rng_seed} PROPTEST_CASES={cases} cargo test --manifest-path {name} -- --exact"
-            ));
+        for (name, Find { draw: Draw { rng_seed, cases }, message }) in &self.state.finds {
+            page += &format!(
+                "\nfailed: {name}\n{message}\nagain: PROPTEST_RNG_SEED={rng_seed} \
+                 PROPTEST_CASES={cases} cargo test --manifest-path {name} -- --exact\n"
+            );
         }
-        say(format_args!("\n{} failed", self.state.finds.len()));
-        page
+        page + &format!("{} properties failed\n", self.state.finds.len())
     }
 
     fn write(&self) -> Result<()> {

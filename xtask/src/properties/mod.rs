@@ -60,6 +60,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
             break;
         }
     }
-    files::print(&campaign.report(&properties, arguments))?;
+    files::print(&campaign.report(&properties, &arguments.seed, arguments.cases))?;
     Ok(if campaign.is_sound() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -3,6 +3,7 @@
 use glam::{DMat2, DMat3, DVec2};
 use serde::{Deserialize, Serialize};
 
+use super::Lens;
 use super::positive::is_positive;
 
 /// Radial and tangential distortion of the normalised image plane (z = 1), as in OpenCV's
@@ -124,9 +125,16 @@ impl Distortion {
         if self.is_none() {
             return distorted.is_finite().then_some(distorted);
         }
+        // Near the fold a step from the middle may leap to the fold and stay there; the other start
+        // is close to the point, but takes longer to find.
+        self.descend(DVec2::ZERO, distorted)
+            .or_else(|| self.descend(self.undistort_radially(distorted), distorted))
+    }
+
+    /// The point that the lens puts at `distorted`, by damped Newton steps from `point`.
+    fn descend(&self, mut point: DVec2, distorted: DVec2) -> Option<DVec2> {
         let tolerance = Self::TOLERANCE * (1.0 + distorted.length());
-        let mut point = DVec2::ZERO;
-        let mut error = -distorted;
+        let mut error = self.distort(point) - distorted;
         for _ in 0..60 {
             if error.length() <= tolerance {
                 return Some(point);
@@ -140,6 +148,26 @@ impl Distortion {
             })?;
         }
         None
+    }
+
+    /// The point short of the fold that the radial part and the tilt put at `distorted`, or else
+    /// the fold, by bisection.
+    fn undistort_radially(&self, distorted: DVec2) -> DVec2 {
+        let bent =
+            if self.is_tilted() { tilted(&self.tilt().inverse(), distorted) } else { distorted };
+        let (direction, radius) = (bent.normalize_or_zero(), bent.length());
+        let (mut short, mut beyond) = (0.0, Lens::FARTHEST);
+        for _ in 0..60 {
+            let middle: f64 = 0.5 * (short + beyond);
+            let s = middle * middle;
+            let is_short = middle * self.above(s) / self.below(s) < radius;
+            if is_short && self.is_one_to_one_at(direction * middle) {
+                short = middle;
+            } else {
+                beyond = middle;
+            }
+        }
+        direction * short
     }
 
     /// Whether the lens has not folded over at this point of the normalised plane: the radial
