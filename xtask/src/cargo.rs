@@ -6,7 +6,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-use crate::files;
+use phalanx_lab::files;
 
 /// The cargo that runs this command, in a folder.
 pub(crate) fn cargo(folder: &Path) -> Command {

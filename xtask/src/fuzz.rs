@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 
-use crate::files;
+use phalanx_lab::files;
 
 const PAGE: &str = "docs/fuzzing.md";
 

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 use serde::Deserialize;
 
-use crate::files;
+use phalanx_lab::files;
 
 const REFINED: &str = "<!-- refined: written by cargo xtask headline -->\n";
 const PAPER: &str = "<!-- paper: written by cargo xtask headline -->\n";

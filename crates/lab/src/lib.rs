@@ -1,6 +1,17 @@
-//! The experiments of phalanx. `cargo xtask` starts them.
+//! The experiments of phalanx: data, methods, scores, reports. `cargo xtask` starts them.
 
+mod baselines;
+mod bench;
+pub mod commands;
+mod context;
+mod data;
+mod eval;
+mod figures;
 pub mod files;
-pub mod mosaic;
-pub mod progress;
+mod memory;
+mod metrics;
+mod models;
+mod paper;
+mod progress;
 pub mod real;
+mod recipes;

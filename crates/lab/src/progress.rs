@@ -7,11 +7,11 @@ use phalanx::{Losses, Progress};
 
 /// A bar on standard error with an estimate of the time that remains; nothing where that is no
 /// terminal.
-pub struct Bar(Mutex<ProgressBar>);
+pub(crate) struct Bar(Mutex<ProgressBar>);
 
 impl Bar {
     /// Shows nothing before the first stage begins.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(Mutex::new(ProgressBar::hidden()))
     }
 }

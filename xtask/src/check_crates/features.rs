@@ -5,7 +5,7 @@ use anyhow::Result;
 
 use super::metadata::Package;
 use crate::cargo::{cargo, run};
-use crate::files;
+use phalanx_lab::files;
 
 pub(super) fn check(packages: &[Package]) -> Result<()> {
     for package in packages.iter().filter(|package| package.is_published()) {

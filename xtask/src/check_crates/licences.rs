@@ -9,7 +9,7 @@ use serde::Deserialize;
 use spdx::{Expression, Licensee, ParseMode};
 
 use super::metadata::Package;
-use crate::files;
+use phalanx_lab::files;
 
 #[derive(Deserialize)]
 struct Deny {

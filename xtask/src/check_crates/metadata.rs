@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 
 use crate::cargo::cargo;
-use crate::files;
+use phalanx_lab::files;
 
 #[derive(Deserialize)]
 struct Metadata {

@@ -6,7 +6,7 @@ use std::process::Command;
 use anyhow::{Context, Result, ensure};
 
 use crate::cargo::{cargo, run, target};
-use crate::files;
+use phalanx_lab::files;
 
 /// Resolves and compiles in a copy, whose lock file is its own.
 pub(super) fn check() -> Result<()> {

@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 
 use super::metadata::Package;
 use crate::cargo::{cargo, run, target};
-use crate::files;
+use phalanx_lab::files;
 
 /// What cargo always warns of at the end of a dry run.
 const DRY: &str = "warning: aborting upload due to dry run";

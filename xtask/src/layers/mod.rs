@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 
-use crate::files;
+use phalanx_lab::files;
 use modules::Modules;
 
 /// Crates that do not keep to this yet, each of which is to leave this list.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::discovery::Property;
 use super::trial::{self, Draw};
-use crate::files;
+use phalanx_lab::files;
 
 /// A property whose cases take longer than this, s, is tried on a tenth of them.
 const SLOW: f64 = 0.02;

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
 
 use crate::cargo::cargo;
-use crate::files;
+use phalanx_lab::files;
 
 /// A test that draws its cases at random.
 pub(super) struct Property {

@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, ensure};
 use clap::Args;
 
-use crate::files;
 use campaign::Campaign;
+use phalanx_lab::files;
 
 /// Where a campaign says how far it has come.
 const STATE: &str = "target/properties.json";

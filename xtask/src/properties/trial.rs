@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
 use super::discovery::Property;
-use crate::files;
+use phalanx_lab::files;
 
 /// A property that has not answered by then hangs.
 const PATIENCE: Duration = Duration::from_mins(20);

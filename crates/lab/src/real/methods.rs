@@ -6,7 +6,7 @@ use phalanx::Progress;
 
 use super::landmarks::Landmarks;
 use super::method::{Method, Outcome, Sequence};
-use super::product::{Estimated, Learn, Product, RefinedFrames};
+use super::product::{Estimated, Product, RefinedFrames};
 use super::reference::Reference;
 use super::take::{Input, Take};
 
@@ -60,10 +60,10 @@ impl<'a> Prepared<'a> {
         views: &[usize],
         reference: &'a Reference,
         methods: &[MethodName],
-        learn: &Learn<'_>,
+        progress: &dyn Progress,
     ) -> Self {
         let needed = methods.iter().any(|method| method.needs_model());
-        Self { reference, product: needed.then(|| Product::learn(take, views, learn)) }
+        Self { reference, product: needed.then(|| Product::train(take, views, progress)) }
     }
 
     /// A method, ready to run.

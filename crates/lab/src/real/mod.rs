@@ -4,6 +4,7 @@
 
 pub mod angles;
 pub mod constant;
+pub(crate) mod contact_sheet;
 pub mod deviation;
 pub mod frame;
 pub mod landmarks;
@@ -20,6 +21,7 @@ mod statistics;
 mod subsets;
 mod table;
 pub mod take;
+pub(crate) mod two_camera;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -29,11 +31,11 @@ use clap::Args;
 use phalanx::Progress;
 use serde::Serialize;
 
-use crate::{files, progress};
+use crate::files;
+use crate::progress;
 use frame::{FrameName, FrameRanges};
 use method::{Outcome, Sequence};
 use methods::{MethodName, Prepared};
-use product::Learn;
 use reference::Reference;
 use report::Line;
 use row::Row;
@@ -79,11 +81,11 @@ struct Rows<'a> {
     rows: Vec<&'a Row>,
 }
 
-/// Evaluates the takes; `learn` trains the product's model for a rig.
+/// Evaluates the takes.
 ///
 /// # Errors
 /// Data that is not as expected; names the file.
-pub fn run(arguments: &Arguments, learn: &Learn<'_>) -> Result<()> {
+pub fn run(arguments: &Arguments) -> Result<()> {
     let mut folders = take::takes_in(&arguments.data)?;
     let name = |folder: &Path| folder.file_name().map(|name| name.to_string_lossy().into_owned());
     for wanted in &arguments.take {
@@ -105,7 +107,7 @@ pub fn run(arguments: &Arguments, learn: &Learn<'_>) -> Result<()> {
             scorer: Scorer::new(&reference),
             progress: &bar,
         };
-        evaluation.run(learn, &mut lines, &mut notes)?;
+        evaluation.run(&mut lines, &mut notes)?;
         if let Some(constant) = evaluation.scorer.constant_joints_mm() {
             notes.push(format!("{}: best constant hand at the wrist {constant:.1} mm", take.name));
         }
@@ -128,7 +130,7 @@ struct Evaluation<'a> {
 
 impl Evaluation<'_> {
     /// A line for each of the cameras used, the input and the method; notes beside them.
-    fn run(&self, learn: &Learn<'_>, lines: &mut Vec<Line>, notes: &mut Vec<String>) -> Result<()> {
+    fn run(&self, lines: &mut Vec<Line>, notes: &mut Vec<String>) -> Result<()> {
         let methods = match &*self.arguments.method {
             [] => &MethodName::ALL[..],
             some => some,
@@ -142,7 +144,8 @@ impl Evaluation<'_> {
                         .any(|input| !self.frames(*method, &views, input).is_empty())
                 })
                 .collect();
-            let prepared = Prepared::new(self.take, &views, self.reference, &with_frames, learn);
+            let prepared =
+                Prepared::new(self.take, &views, self.reference, &with_frames, self.progress);
             for input in Input::ALL {
                 for &name in methods.iter().filter(|name| self.inputs(**name).any(|of| of == input))
                 {

@@ -4,7 +4,8 @@
 use anyhow::Result;
 use image::{DynamicImage, GrayImage, RgbImage};
 use phalanx::{
-    Estimate, Estimator, Picture, Progress, RefinedEstimate, Refiner, Segmenter, Workspace,
+    Estimate, Estimator, Framing, Picture, Preset, Progress, RefinedEstimate, Refiner, Segmenter,
+    Trainer, Workspace,
 };
 use phalanx_camera::{Rig, Volume};
 use phalanx_hand::HandShape;
@@ -21,9 +22,6 @@ const SIDE_MM: f64 = 300.0;
 /// Overlap below which `phalanx estimate` doubts a refined hand.
 const GOOD_OVERLAP: f64 = 0.8;
 
-/// Learns an estimator, which knows how it errs, for a rig and a hand.
-pub type Learn<'a> = dyn Fn(&Rig, &HandShape) -> Result<Estimator> + 'a;
-
 /// A model for some of a take's cameras.
 pub struct Product {
     estimator: Estimator,
@@ -32,16 +30,18 @@ pub struct Product {
 }
 
 impl Product {
-    /// Imports the take's calibration and learns for the cameras of these numbers.
+    /// Imports the take's calibration and trains for the cameras of these numbers, as
+    /// `phalanx train --preset fast --framing window` does.
     ///
     /// # Errors
     /// Cameras for which no volume can be guessed, such as a single one, or nothing can be learnt.
-    pub fn learn(take: &Take, views: &[usize], learn: &Learn<'_>) -> Result<Self> {
+    pub fn train(take: &Take, views: &[usize], progress: &dyn Progress) -> Result<Self> {
         let all: Vec<usize> = (0..take.cameras.len()).collect();
         let volume = Volume::between(&take.cameras(&all), SIDE_MM)?;
         let rig = Rig { cameras: take.cameras(views), volume };
         let hand = HandShape { side: take.side, ..HandShape::adult() };
-        let estimator = learn(&rig, &hand)?;
+        let trainer = Trainer::preset(Preset::Fast).framing(Framing::Window);
+        let estimator = trainer.fit(&rig, &hand, progress)?;
         let refinement = Refinement { doubt: Some(Doubt::default()), ..Refinement::default() };
         let refiner = Refiner::for_estimator(&estimator, refinement)?;
         Ok(Self { estimator, refiner, skin: Segmenter::Skin(SkinModel::builtin()) })
@@ -69,8 +69,8 @@ impl Product {
     }
 
     fn refine(&self, estimate: Estimate) -> Result<Found> {
-        let RefinedEstimate { estimate, fit, .. } =
-            self.refiner.refine_estimate(&self.estimator, estimate)?;
+        let fitted = self.refiner.refine_estimate(&self.estimator, estimate)?;
+        let RefinedEstimate { estimate, fit, .. } = fitted;
         let prior = self.refiner.prior(&estimate.pose, &estimate.std)?;
         let covariance = PoseCovariance::new(prior.dofs(), &fit.covariance);
         let (hand, rest) = (self.refiner.hand(), self.refiner.rest());
@@ -86,7 +86,8 @@ fn forearm_doubts(estimate: &Estimate) -> Vec<String> {
         Evidence::Border if forearm.crossings > 1 => Some("more than one forearm".to_owned()),
         Evidence::Border => None,
     };
-    estimate.observation.forearms().filter_map(doubt).collect()
+    let views = estimate.observation.views.iter();
+    views.filter_map(|view| doubt(&view.silhouette.forearm)).collect()
 }
 
 /// What `phalanx estimate --refine` says of a fit.

@@ -10,8 +10,8 @@ use super::method::{Outcome, Sequence};
 use super::overlap;
 use super::score::FrameScore;
 use super::statistics::mean;
+use crate::figures::mosaic::mosaic;
 use crate::files;
-use crate::mosaic::mosaic;
 
 /// Of so many frames one is shown, and besides so many of the worst.
 const EVERY: usize = 10;

@@ -1,0 +1,98 @@
+//! The experiments as commands of `cargo xtask`: one registry of them.
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::Subcommand;
+
+use crate::bench::{peers, performance};
+use crate::data::fixtures;
+use crate::eval::{ablation, global_pose, held_out, hypotheses, presets, selection, table1};
+use crate::figures::pictures;
+use crate::models::{skin_model, wrist_model};
+use crate::paper;
+use crate::paper::page;
+use crate::real::{self, contact_sheet, two_camera};
+use crate::recipes::{merge, train};
+
+/// An experiment.
+#[derive(Subcommand)]
+#[non_exhaustive]
+pub enum Command {
+    /// Learn an estimator from synthetic views and save it.
+    Train(train::Arguments),
+    /// Join the parts of a training that was run in shards.
+    Merge(merge::Arguments),
+    /// Reproduce the paper's Table 1 beside its own figures.
+    #[command(name = "eval-table1")]
+    EvalTable1(table1::Arguments),
+    /// Test on what was never seen: other motion, hands, cameras, silhouettes.
+    #[command(name = "eval-held-out")]
+    EvalHeldOut(held_out::Arguments),
+    /// Test where hands are found and how they are turned, anywhere in the volume.
+    #[command(name = "eval-global")]
+    EvalGlobal(global_pose::Arguments),
+    /// Evaluate real takes, by cameras used, input and method.
+    #[command(name = "eval-real")]
+    EvalReal(real::Arguments),
+    /// Compare ways of choosing which samples to keep, and write docs/selection.md.
+    Selection(selection::Arguments),
+    /// Compare ways of naming several poses for one picture, and write docs/hypotheses.md.
+    Hypotheses(hypotheses::Arguments),
+    /// Switch off each part of learning and refining in turn, and write docs/ablation.md.
+    Ablation(ablation::Arguments),
+    /// What the presets cost in time and memory, and how good they are: docs/presets.md.
+    Presets(presets::Arguments),
+    /// Put one of the paper's figures or claims to the test.
+    Experiment(paper::Arguments),
+    /// Run every experiment and write one page that a reader of the paper can follow.
+    Report(page::Arguments),
+    /// Train the skin model that the segmentation crate ships.
+    SkinModel(skin_model::Arguments),
+    /// Train the wrist model that the segmentation crate ships, and say how well it finds wrists.
+    WristModel(wrist_model::Arguments),
+    /// Draw silhouettes, contours and axes over photographs, and measure the skin model.
+    ContactSheet(contact_sheet::Arguments),
+    /// Find a real hand in the frames of two calibrated webcams, and draw what was seen.
+    TwoCamera(two_camera::Arguments),
+    /// Regenerate the files in fixtures/, or check that they are as generated.
+    Fixtures(fixtures::Arguments),
+    /// Draw the pictures of the README, and photographs to try the program on.
+    Pictures(pictures::Arguments),
+    /// Measure our crates beside their best peers, and write docs/peers.md.
+    BenchPeers(peers::Arguments),
+    /// Time every stage and write docs/performance.md.
+    Performance(performance::Arguments),
+}
+
+impl Command {
+    /// Runs the experiment; the exit code tells whether all of it was done.
+    ///
+    /// # Errors
+    /// Whatever keeps the experiment from a result.
+    pub fn run(&self) -> Result<ExitCode> {
+        match self {
+            Self::Train(arguments) => train::run(arguments)?,
+            Self::Merge(arguments) => merge::run(arguments)?,
+            Self::EvalTable1(arguments) => table1::run(arguments)?,
+            Self::EvalHeldOut(arguments) => return held_out::run(arguments),
+            Self::EvalGlobal(arguments) => global_pose::run(arguments)?,
+            Self::EvalReal(arguments) => real::run(arguments)?,
+            Self::Selection(arguments) => selection::run(arguments)?,
+            Self::Hypotheses(arguments) => hypotheses::run(arguments)?,
+            Self::Ablation(arguments) => ablation::run(arguments)?,
+            Self::Presets(arguments) => presets::run(arguments)?,
+            Self::Experiment(arguments) => paper::run(arguments)?,
+            Self::Report(arguments) => return page::run(arguments),
+            Self::SkinModel(arguments) => skin_model::run(arguments)?,
+            Self::WristModel(arguments) => wrist_model::run(arguments)?,
+            Self::ContactSheet(arguments) => contact_sheet::run(arguments)?,
+            Self::TwoCamera(arguments) => two_camera::run(arguments)?,
+            Self::Fixtures(arguments) => fixtures::run(arguments)?,
+            Self::Pictures(arguments) => pictures::run(arguments)?,
+            Self::BenchPeers(arguments) => peers::run(arguments)?,
+            Self::Performance(arguments) => performance::run(arguments)?,
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

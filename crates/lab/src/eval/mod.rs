@@ -1,0 +1,11 @@
+//! Evaluations on drawn hands.
+
+pub(crate) mod ablation;
+pub(crate) mod global_pose;
+pub(crate) mod held_out;
+pub(crate) mod hypotheses;
+pub(crate) mod orientation;
+pub(crate) mod presets;
+pub(crate) mod refining;
+pub(crate) mod selection;
+pub(crate) mod table1;

@@ -1,0 +1,7 @@
+//! Charts and pictures.
+
+pub(crate) mod chart;
+pub(crate) mod mosaic;
+pub(crate) mod photograph;
+pub(crate) mod pictures;
+pub(crate) mod plate;
