@@ -1,13 +1,13 @@
 //! Estimates and what refinement makes of them, with the time that both take.
 
 use anyhow::Result;
-use cpu_time::ThreadTime;
 use phalanx::{Estimate, Estimator, Framing, Picture, Progress, SceneDescriber, Scenes, Workspace};
 use phalanx_hand::Pose;
 use phalanx_refine::{Doubt, Refinement};
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
+use crate::clock::thread_ms;
 use crate::data::sets::Set;
 use crate::eval::held_out::Ground;
 use crate::eval::held_out::refined::{self, Starts};
@@ -82,35 +82,34 @@ impl Refining {
         let look = |(describer, workspace): &mut (SceneDescriber, Workspace), &number: &usize| {
             let scene = set.scene(number);
             let refiner = &own[number % set.hands() % own.len()];
-            let (estimate, [start, estimated]) = match estimator.framing() {
+            let (estimate_ms, estimate) = match estimator.framing() {
                 Framing::Picture => {
                     let Ok(seen) = describer.silhouettes(&scene) else { return Ok(None) };
                     let seen: Vec<Silhouette> = seen.cloned().collect();
-                    let start = ThreadTime::now();
-                    let estimate = estimator.estimate_silhouettes(&seen, workspace)?;
-                    (estimate, [start, ThreadTime::now()])
+                    let (ms, estimate) =
+                        thread_ms(|| estimator.estimate_silhouettes(&seen, workspace));
+                    (ms, estimate?)
                 }
                 Framing::Window => {
                     let masks = describer.masks(&scene)?;
                     let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
-                    let start = ThreadTime::now();
-                    let estimate = estimator.estimate(&pictures, workspace);
+                    let (ms, estimate) = thread_ms(|| estimator.estimate(&pictures, workspace));
                     let Ok(estimate) = estimate else { return Ok(None) };
-                    (estimate, [start, ThreadTime::now()])
+                    (ms, estimate)
                 }
             };
             let believed = match self.believed {
                 Believed::Estimate => estimate.clone(),
                 Believed::Truth => Estimate { pose: scene.pose, ..estimate.clone() },
             };
-            let refined = refined::refine(estimator, refiner, believed, self.starts)?;
-            let refine_ms = 1e3 * estimated.elapsed().as_secs_f64();
+            let (refine_ms, refined) =
+                thread_ms(|| refined::refine(estimator, refiner, believed, self.starts));
             progress.step();
             Ok(Some(Look {
                 truth: scene.pose,
                 estimate: estimate.pose,
-                refined,
-                estimate_ms: 1e3 * estimated.duration_since(start).as_secs_f64(),
+                refined: refined?,
+                estimate_ms,
                 refine_ms,
             }))
         };

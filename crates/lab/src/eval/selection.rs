@@ -1,9 +1,6 @@
 //! `cargo xtask selection`: error against kept samples and fit time, for every way of choosing
 //! which samples to keep.
 
-use std::fmt::Write;
-use std::time::Instant;
-
 use anyhow::Result;
 use clap::Args;
 use comfy_table::{Table, presets};
@@ -14,7 +11,9 @@ use phalanx_rvm::{
     AgarwalTriggs, Bandwidth, BasisSpec, Fit, Kernel, MultiOutputRvm, NystromRidge,
     OrthogonalLeastSquares, PilotSample, Ridge, Stop, SufficientStatistics, random_subset,
 };
+use std::fmt::Write;
 
+use crate::clock::timed;
 use crate::data::described::Samples;
 use crate::data::sets::{self, Augment, Set, Test};
 use crate::eval::held_out::errors::active_angles;
@@ -133,9 +132,8 @@ pub(crate) fn run(_: &Arguments) -> Result<()> {
     ]);
     for selector in Selector::ALL {
         for count in KEPT {
-            let start = Instant::now();
-            let model = selector.fit(&learnt, count)?.model;
-            let seconds = start.elapsed().as_secs_f64();
+            let (seconds, fit) = timed(|| selector.fit(&learnt, count))?;
+            let model = fit.model;
             let kept = model.kept_samples().len();
             let mut row = vec![selector.name().to_owned(), count.to_string(), kept.to_string()];
             for test in &tests {

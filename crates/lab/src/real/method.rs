@@ -4,7 +4,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, Result};
-use cpu_time::ThreadTime;
 use glam::{DAffine3, DVec3};
 use image::DynamicImage;
 use phalanx::Progress;
@@ -14,6 +13,7 @@ use phalanx_hand::{HandShape, JOINTS, Pose, Primitive};
 use super::deviation::{PoseCovariance, joint_deviations};
 use super::frame::FrameName;
 use super::take::{Input, Take};
+use crate::clock::thread_ms;
 
 /// What a method looks at: frames of a take through some of its cameras. References are not in it.
 pub struct Sequence<'a> {
@@ -113,9 +113,8 @@ pub fn each_frame<M>(
         let mut memory = memory();
         while let Some(frame) = frames.get(next.fetch_add(1, Ordering::Relaxed)) {
             let pictures = sequence.pictures(frame)?;
-            let start = ThreadTime::now();
-            let found = look(&mut memory, &pictures);
-            let outcome = Outcome { found, cpu_ms: Some(1e3 * start.elapsed().as_secs_f64()) };
+            let (ms, found) = thread_ms(|| look(&mut memory, &pictures));
+            let outcome = Outcome { found, cpu_ms: Some(ms) };
             let mut outcomes = outcomes.lock().unwrap_or_else(PoisonError::into_inner);
             outcomes.push((frame, outcome));
             progress.step();

@@ -8,10 +8,10 @@ use phalanx_rvm::{
     SufficientStatistics,
 };
 
-use super::clock::{middle, timed};
 use super::data::Problem;
 use super::peers::{Peers, field};
 use super::row::{Figure, Row, Target};
+use crate::clock::{middle, timed};
 
 /// How many vectors all outputs may share.
 const MOST: usize = 150;

@@ -5,9 +5,9 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use phalanx_codebook::{KMeans, Metric, chi_squared};
 
-use super::clock::{middle, timed};
 use super::peers::{Peers, field};
 use super::row::{Figure, Row, Target};
+use crate::clock::{middle, timed};
 
 const SAMPLES: usize = 100_000;
 const DIM: usize = 60;

@@ -1,7 +1,6 @@
 //! `cargo xtask bench-peers`: our crates beside the best packages that do the same, on the same
 //! data, in one run and on one thread each. Writes docs/peers.md.
 
-mod clock;
 mod data;
 mod hand;
 mod kmeans;

@@ -4,9 +4,9 @@ use anyhow::Result;
 use phalanx_rvm::faer::Mat;
 use phalanx_rvm::{Bandwidth, Kernel, Model, OrthogonalLeastSquares, Scratch};
 
-use super::clock::{each, median};
 use super::peers::Peers;
 use super::row::{Figure, Row, Target};
+use crate::clock::{each, median};
 
 const INPUTS: usize = 90;
 const OUTPUTS: usize = 24;

@@ -5,10 +5,10 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use phalanx_rvm::{Bandwidth, Kernel, RelevanceVectorMachine};
 
-use super::clock::{middle, timed};
 use super::data::Problem;
 use super::peers::{Conversation, Peers};
 use super::row::{Figure, Row, Target};
+use crate::clock::{middle, timed};
 
 /// Names of the files, names to print, and γ; that of Friedman's is one over the inputs.
 const PROBLEMS: [(&str, &str, Option<f64>); 13] = [

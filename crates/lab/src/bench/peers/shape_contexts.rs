@@ -3,10 +3,10 @@
 use anyhow::{Context, Result};
 use phalanx_shape_context::{Matcher, Orientation, ShapeContexts};
 
-use super::clock::{each, median};
 use super::data::matrix;
 use super::peers::Peers;
 use super::row::{Figure, Row, Target};
+use crate::clock::{each, median};
 
 const REPETITIONS: usize = 3;
 /// Contours in one measurement of ours, and pairs of shapes.

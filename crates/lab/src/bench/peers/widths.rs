@@ -6,10 +6,10 @@ use std::path::Path;
 use anyhow::{Result, anyhow};
 use phalanx_rvm::ArdRvm;
 
-use super::clock::{middle, timed};
 use super::data::Problem;
 use super::peers::{Peers, field};
 use super::row::{Figure, Row, Target};
+use crate::clock::{middle, timed};
 
 const PROBLEMS: [(&str, &str); 3] = [
     ("fried1_1000", "Friedman 1, 1000, learnt widths"),

@@ -1,7 +1,5 @@
 //! How long an estimate takes.
 
-use std::time::Instant;
-
 use anyhow::{Result, ensure};
 use faer::Mat;
 use phalanx::{Describer, SceneDescriber, Scenes};
@@ -11,6 +9,7 @@ use phalanx_segmentation::Silhouette;
 use super::Ground;
 use super::learner::Learner;
 use super::row::Row;
+use crate::clock::timed;
 use crate::data::sets::Test;
 
 /// Poses that are estimated again and again, at most, and how often.
@@ -50,9 +49,7 @@ pub(crate) fn add(rows: &mut [Row], learners: &[Learner], ground: &Ground) -> Re
 fn fastest<T>(poses: usize, work: impl Fn() -> Result<T>) -> Result<f64> {
     let mut least = f64::INFINITY;
     for _ in 0..ROUNDS {
-        let start = Instant::now();
-        work()?;
-        least = least.min(start.elapsed().as_secs_f64());
+        least = least.min(timed(&work)?.0);
     }
     Ok(1e6 * least / poses as f64)
 }

@@ -11,8 +11,8 @@ use phalanx_rvm::{Bandwidth, KernelRidge, Model, Regularisation};
 use phalanx_segmentation::Silhouette;
 use phalanx_shape_context::{BINS, Orientation, ShapeContexts};
 
-use super::clock::{exponent, seconds};
 use super::stages::estimate;
+use crate::clock::seconds;
 use crate::context::Lab;
 use crate::data::described::{Described, Halves, vocabulary};
 use crate::data::split::Split;
@@ -255,4 +255,26 @@ fn kept_samples(halves: &Halves) -> Result<Group> {
     };
     let growths = vec![Growth::over("pose", &[20, 40, 80, 160, 320], pose)?];
     Ok(Group { with: "selected samples", growths })
+}
+
+/// How a time grows with a size: the exponent of the power law that fits best, by least squares
+/// on logarithms.
+fn exponent(points: &[(f64, f64)]) -> f64 {
+    let count = points.len() as f64;
+    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let mean_x = logs.iter().map(|p| p.0).sum::<f64>() / count;
+    let mean_y = logs.iter().map(|p| p.1).sum::<f64>() / count;
+    let product: f64 = logs.iter().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
+    product / logs.iter().map(|(x, _)| (x - mean_x).powi(2)).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_law_has_its_exponent() {
+        let points: Vec<(f64, f64)> = [1.0, 2.0, 5.0].map(|x: f64| (x, 3.0 * x.powf(1.5))).into();
+        assert!((exponent(&points) - 1.5).abs() < 1e-12);
+    }
 }

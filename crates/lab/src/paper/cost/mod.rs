@@ -1,6 +1,5 @@
 //! § 5.4: what every stage costs, and how it grows.
 
-mod clock;
 mod growth;
 mod stages;
 
@@ -8,9 +7,9 @@ use anyhow::Result;
 use serde_json::json;
 
 use super::{Experiment, Figure, Finding, Table, Verdict};
+use crate::clock::duration;
 use crate::context::Lab;
 use crate::figures::chart::{Axis, Chart, Mark, Series};
-use clock::duration;
 use growth::{Group, Growth};
 use stages::Stages;
 

@@ -11,7 +11,7 @@ use phalanx_rvm::{Model, Scratch};
 use phalanx_segmentation::{Silhouette, SkinModel};
 use phalanx_shape_context::BINS;
 
-use super::clock::seconds;
+use crate::clock::seconds;
 use crate::context::Lab;
 use crate::data::described::{Described, Halves, Samples, vocabulary};
 use crate::data::split::Split;
