@@ -2,18 +2,17 @@
 
 mod angles;
 mod fit;
-mod frames;
 mod paper;
 mod sheet;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Args;
 use glam::DVec3;
 use image::{GrayImage, RgbImage};
 use phalanx::{Progress, Window, WindowFinder, Workspace};
-use phalanx_camera::{Rig, Volume, cameras_from_opencv_json, triangulate};
+use phalanx_camera::{Rig, Volume, triangulate};
 use phalanx_hand::{Dof, HandShape, Pose, write_poses};
 use phalanx_refine::Refined;
 use phalanx_segmentation::{Silhouette, SkinModel};
@@ -21,10 +20,11 @@ use phalanx_segmentation::{Silhouette, SkinModel};
 use crate::data::sets;
 use crate::files;
 use crate::progress;
-use frames::Frame;
+use crate::real::angles::{COUNT, of_joints};
+use crate::real::frame::FrameName;
+use crate::real::reference::Reference;
+use crate::real::take::{Input, Take, TakeCamera};
 
-/// The squares of the chessboard that the cameras were calibrated with, mm.
-const SQUARE_MM: f64 = 50.0;
 /// Hands that are learnt from, unless it is said how many.
 const SAMPLES: usize = 3000;
 /// How often the hand is calibrated, each time from frames refined with it as it was before.
@@ -73,9 +73,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         eprintln!("{}: no such folder; skipped", folder.display());
         return Ok(());
     }
-    let rig = rig(&folder)?;
-    let frames = frames::read(&folder, &rig)?;
-    let looks = look_at(&rig, frames);
+    let take = Take::read(&folder)?;
+    let rig = rig(&take)?;
+    let looks = look_at(&rig, &take)?;
     let whole: Vec<&str> =
         looks.iter().filter(|look| is_whole(look)).map(|look| look.name.as_str()).collect();
     let mut report: Vec<String> = looks.iter().map(line).collect();
@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     sheet::write(&arguments.out, &looks)?;
     if !arguments.windows_only {
         let bar = progress::Bar::new();
-        report.extend(fit(arguments, &folder, &rig, &looks, &bar)?);
+        report.extend(fit(arguments, &take, &rig, &looks, &bar)?);
     }
     files::print(&report.concat())
 }
@@ -96,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
 /// Estimates, calibrates and refines the frames with the whole hand in both views; what came of it.
 fn fit(
     arguments: &Arguments,
-    folder: &Path,
+    take: &Take,
     rig: &Rig,
     looks: &[Look],
     progress: &dyn Progress,
@@ -118,11 +118,14 @@ fn fit(
     let rounds = own_hand(&learnt, &starts, &with_mean)?;
     let (own, with_own) = rounds.last().context("no round of calibration")?;
     let names: Vec<&str> = whole.iter().map(|look| look.name.as_str()).collect();
-    let reference = angles::reference(folder, &names)?;
+    let reference = Reference::read(&take.folder, &take.camera_names())?.angles;
+    let of_frame = |name: &&str| reference.get(&FrameName::from(*name)).copied();
+    let reference: Vec<_> =
+        names.iter().map(|name| of_frame(name).unwrap_or([None; COUNT])).collect();
     let rest = rig.volume.rest_frame();
     let estimates: Vec<Pose> = starts.iter().map(|start| start.estimate.pose).collect();
     let table = |what: &str, hand: &HandShape, poses: &[Pose]| {
-        let of = |pose: &Pose| angles::of_joints(&hand.pose(pose, &rest).joints);
+        let of = |pose: &Pose| of_joints(&hand.pose(pose, &rest).joints);
         let found: Vec<_> = poses.iter().map(of).collect();
         format!("{what}\n{}", angles::table(&found, &reference))
     };
@@ -189,10 +192,9 @@ fn said_of(what: &str, hand: &HandShape, names: &[&str], fitted: &[Refined]) -> 
 }
 
 /// The rig of the calibration, the person opposite the first camera.
-fn rig(folder: &Path) -> Result<Rig> {
-    let path = folder.join("calibration.json");
-    let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-    let cameras = cameras_from_opencv_json(&text, SQUARE_MM)?;
+fn rig(take: &Take) -> Result<Rig> {
+    let all: Vec<usize> = (0..take.cameras.len()).collect();
+    let cameras = take.cameras(&all);
     let guess = Volume::between(&cameras, VOLUME_MM)?;
     let rig = Rig { cameras, volume: Volume { forearm: -guess.forearm, ..guess } };
     rig.validate()?;
@@ -201,17 +203,21 @@ fn rig(folder: &Path) -> Result<Rig> {
 
 /// Looks for the hand in each frame, near where it was in the frame before unless that did not show
 /// the whole of it.
-fn look_at(rig: &Rig, frames: Vec<Frame>) -> Vec<Look> {
+fn look_at(rig: &Rig, take: &Take) -> Result<Vec<Look>> {
     let (skin, mut finder, mut last) = (SkinModel::builtin(), WindowFinder::default(), None);
-    let mut looks = Vec::with_capacity(frames.len());
-    for Frame { name, images } in frames {
+    let all: Vec<usize> = (0..take.cameras.len()).collect();
+    let mut looks = Vec::new();
+    for frame in take.frames(&all, Input::Photographs) {
+        let image = |camera: &TakeCamera| camera.picture(&frame, Input::Photographs);
+        let images = take.cameras.iter().map(|camera| Ok(image(camera)?.to_rgb8()));
+        let images: Vec<RgbImage> = images.collect::<Result<_>>()?;
         let masks: Vec<GrayImage> = images.iter().map(|image| skin.segment(image)).collect();
         let seen = see(rig, &masks, &mut finder, last);
-        let look = Look { name, images, masks, seen };
+        let look = Look { name: frame.to_string(), images, masks, seen };
         last = look.seen.as_ref().ok().filter(|_| is_whole(&look)).map(|seen| seen.wrist);
         looks.push(look);
     }
-    looks
+    Ok(looks)
 }
 
 fn see(
