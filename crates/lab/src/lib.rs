@@ -12,6 +12,7 @@ pub mod files;
 mod memory;
 mod metrics;
 mod models;
+mod page;
 mod paper;
 mod progress;
 pub mod real;

@@ -12,6 +12,7 @@ use serde::de::DeserializeOwned;
 
 use crate::bench::scale;
 use crate::files;
+use crate::page::Page;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -150,11 +151,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     measure(arguments, &results)?;
     let mut medians = Medians::new();
     read(&results, &mut medians)?;
-    let page = page(arguments, &medians, &scale::section()?)?;
-    let path = files::in_repository("docs/performance.md");
-    files::write_whole(&path, page.as_bytes())?;
-    files::print(&format!("{}: {} benchmarks\n", path.display(), medians.len()))?;
-    Ok(())
+    let command =
+        if arguments.quick { "cargo xtask performance --quick" } else { "cargo xtask performance" };
+    let page = Page { file: "performance.md", command, title: "Performance" };
+    page.write(&body(command, &medians, &scale::section()?)?)?;
+    files::print(&format!("docs/{}: {} benchmarks\n", page.file, medians.len()))
 }
 
 /// Runs the benchmarks; criterion leaves its figures in `results`.
@@ -193,16 +194,12 @@ fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T> {
     serde_json::from_slice(&std::fs::read(path).with_context(name)?).with_context(name)
 }
 
-fn page(arguments: &Arguments, medians: &Medians, scale: &str) -> Result<String> {
+fn body(command: &str, medians: &Medians, scale: &str) -> Result<String> {
     if let Some(id) = medians.keys().find(|id| rows().all(|row| row.0 != **id)) {
         bail!("no table has a line for the benchmark '{id}'");
     }
-    let command =
-        if arguments.quick { "cargo xtask performance --quick" } else { "cargo xtask performance" };
     Ok(format!(
-        "<!-- Written by `{command}`; not to be edited. -->\n\
-         # Performance\n\n\
-         `{command}` measured every figure of this page but those of others, and wrote it.\n\n\
+        "`{command}` measured every figure of this page but those of others, and wrote it.\n\n\
          measured on: {}, one thread unless said\n\n\
          Medians, and the 95 % confidence intervals of the medians, by criterion. A target is met\n\
          if the median is within it. On a shared computer figures vary from run to run by more\n\
@@ -297,7 +294,7 @@ mod tests {
 
     #[test]
     fn targets_are_met_or_missed_by_so_much() {
-        let page = page(&Arguments { quick: false }, &medians(), "").unwrap();
+        let page = body("cargo xtask performance", &medians(), "").unwrap();
         let line = |label| page.lines().find(|line| line.contains(label)).unwrap();
         assert!(
             line("**300 shape")
@@ -308,7 +305,7 @@ mod tests {
 
     #[test]
     fn benchmarks_and_lines_must_agree() {
-        let fails = |medians: &Medians| page(&Arguments { quick: true }, medians, "").unwrap_err();
+        let fails = |medians: &Medians| body("", medians, "").unwrap_err();
         let mut missing = medians();
         missing.remove("depth/lens");
         assert!(fails(&missing).to_string().contains("depth/lens"));

@@ -4,7 +4,7 @@ use anyhow::Result;
 use clap::Args;
 use comfy_table::{Table, presets};
 use phalanx::{
-    Description, Estimator, Framing, OrientationRule, Preset, Progress, Regressor, Shard, Training,
+    Description, Estimator, Framing, OrientationRule, Preset, Progress, Regressor, Training,
 };
 use phalanx_hand::Pose;
 use phalanx_refine::{Doubt, Refinement};
@@ -15,9 +15,10 @@ use crate::eval::held_out::errors::mean_error_deg;
 use crate::eval::held_out::refined::Starts;
 use crate::eval::refining::{Hand, Look, Refining};
 use crate::files;
+use crate::page::Page;
 use crate::progress;
+use crate::recipes::trained;
 
-const PAGE: &str = "docs/ablation.md";
 const PRESET: Preset = Preset::Default;
 const TESTS: [Test; 2] = [Test::Unseen, Test::All];
 /// Of so many samples of a test one is looked at; shares no factor with the hands in `all`.
@@ -82,15 +83,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         push(name, &learning.run(&ground, &bar)?, &whole)?;
     }
     drop(bar);
-    let page = format!(
-        "# What each part gives\n\n\
-         Written by `cargo xtask ablation --samples {samples}`: mean absolute error over the 21 active angles,\n\
+    let body = format!(
+        "Mean absolute error over the 21 active angles,\n\
          degrees, three views, every {EVERY}th sample of each test. Each line changes one thing of the first.\n\
          All but the one of few scenes learn from {samples}, the preset by itself from {}.\n\n{table}\n",
         PRESET.scenes(),
     );
-    files::write_whole(&files::in_repository(PAGE), page.as_bytes())?;
-    files::print(&page)
+    let command = format!("cargo xtask ablation --samples {samples}");
+    let page = Page { file: "ablation.md", command: &command, title: "What each part gives" };
+    page.publish(&body)
 }
 
 /// What is changed in refining.
@@ -148,10 +149,8 @@ impl Learning {
     fn run(&self, ground: &Ground, progress: &dyn Progress) -> Result<Estimator> {
         let Ground { rig, hand, .. } = ground;
         let set = sets::random(rig, hand, self.scenes, self.augment);
-        let part = self.training.shard(rig, hand, &set, Shard::WHOLE, progress)?;
-        let estimator = part.finish(progress)?;
         let fresh = sets::fresh(rig, hand, sets::ERROR_SCENES, self.augment);
-        Ok(estimator.learn_errors(&fresh, progress)?)
+        Ok(trained(&self.training, &set, Some(&fresh), progress)?.estimator)
     }
 }
 

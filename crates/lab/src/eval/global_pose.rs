@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 use comfy_table::{Table, presets};
-use phalanx::{Estimator, Framing, OrientationRule, Preset, Progress, Shard, Training};
+use phalanx::{Estimator, Framing, OrientationRule, Preset, Progress, Training};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, Pose};
 
@@ -14,9 +14,10 @@ use crate::eval::held_out::Ground;
 use crate::eval::held_out::refined::Starts;
 use crate::eval::refining::{Believed, Look, Refining};
 use crate::files;
+use crate::page::Page;
 use crate::progress;
+use crate::recipes::trained;
 
-const PAGE: &str = "docs/global.md";
 /// How the estimator is learnt.
 const PRESET: Preset = Preset::Default;
 /// Of so many hands of the test one is looked at.
@@ -85,17 +86,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         table.add_row(row(views, "the truth, refined", &of(&from_truth, |look| &look.refined)));
     }
     drop(bar);
-    let page = format!(
-        "<!-- Written by `cargo xtask eval-global --samples {samples}`; not to be edited. -->\n\
-         # Where the hand is and how it is turned\n\n\
-         Wrists anywhere in the rig's volume, arms leaning by up to 30° in θ_X and in θ_Y, θ_Z from 0° to 90°: every\n\
+    let body = format!(
+        "Wrists anywhere in the rig's volume, arms leaning by up to 30° in θ_X and in θ_Y, θ_Z from 0° to 90°: every\n\
          {EVERY}th of the test `placed`, {looked_at} hands, those found that every camera shows. The default preset, learnt\n\
          through windows from {samples} scenes. Mean, median and 95th percentile of what is wrong; \"all angles\" are the\n\
          23 that vary, those of the digits and the three turns.\n\
          The truth, refined as if it had been estimated, says where a perfect estimate would lead.\n\n{table}\n",
     );
-    files::write_whole(&files::in_repository(PAGE), page.as_bytes())?;
-    files::print(&page)
+    let command = format!("cargo xtask eval-global --samples {samples}");
+    let page = Page {
+        file: "global.md",
+        command: &command,
+        title: "Where the hand is and how it is turned",
+    };
+    page.publish(&body)
 }
 
 /// All cameras, the first two, and one alone.
@@ -117,9 +121,8 @@ fn learn(ground: &Ground, samples: usize, progress: &dyn Progress) -> Result<Est
     let Ground { rig, hand, .. } = ground;
     let training = Training { framing: Framing::Window, ..PRESET.training() };
     let set = sets::for_preset(training.framing, rig, hand, samples);
-    let estimator = training.shard(rig, hand, &set, Shard::WHOLE, progress)?.finish(progress)?;
     let fresh = sets::fresh_for(training.framing, rig, hand);
-    Ok(estimator.learn_errors(&fresh, progress)?)
+    Ok(trained(&training, &set, Some(&fresh), progress)?.estimator)
 }
 
 fn row(views: usize, what: &str, errors: &[Errors]) -> Vec<String> {

@@ -5,7 +5,7 @@ use clap::Args;
 use comfy_table::{Table, presets};
 use faer::Mat;
 use phalanx::{
-    Estimate, Estimator, Preset, Progress, Refiner, SceneDescriber, Scenes, Shard, Workspace,
+    Estimate, Estimator, Preset, Progress, Refiner, SceneDescriber, Scenes, Workspace,
     describe_scenes, targets,
 };
 use phalanx_camera::Rig;
@@ -17,9 +17,15 @@ use rayon::prelude::*;
 use crate::data::sets::{self, Augment, Set, Test};
 use crate::eval::held_out::errors::mean_error_deg;
 use crate::files;
+use crate::page::Page;
 use crate::progress;
+use crate::recipes::trained;
 
-const PAGE: &str = "docs/hypotheses.md";
+const PAGE: Page<'_> = Page {
+    file: "hypotheses.md",
+    command: "cargo xtask hypotheses",
+    title: "Several poses for one picture",
+};
 const PRESET: Preset = Preset::Default;
 /// Scenes from which an estimator learns how it errs.
 const ERROR_SCENES: usize = 5000;
@@ -83,9 +89,8 @@ pub(crate) fn run(_: &Arguments) -> Result<()> {
         }
     }
     drop(bar);
-    let page = format!(
-        "# Several poses for one picture\n\n\
-         Written by `cargo xtask hypotheses`: mean absolute error on `unseen` over the 21 active angles,\n\
+    let body = format!(
+        "Mean absolute error on `unseen` over the 21 active angles,\n\
          degrees, of the first pose named, and of whichever of the first three and five is the\n\
          nearest to the truth; every {EVERY}th sample. Learnt from {} random poses by the preset\n\
          `default`, but of undamaged scenes of one hand, which is easier than what the preset is for; how\n\
@@ -94,8 +99,7 @@ pub(crate) fn run(_: &Arguments) -> Result<()> {
          refined as if it had been estimated, says where a perfect estimate would lead.\n\n{table}\n",
         PRESET.scenes()
     );
-    files::write_whole(&files::in_repository(PAGE), page.as_bytes())?;
-    files::print(&page)
+    PAGE.publish(&body)
 }
 
 /// What each method names for every question.
@@ -106,10 +110,8 @@ fn answers(
     progress: &dyn Progress,
 ) -> Result<Vec<Answers>> {
     let train = sets::random(rig, hand, PRESET.scenes(), Augment::No);
-    let part = PRESET.training().shard(rig, hand, &train, Shard::WHOLE, progress)?;
-    let estimator = part.finish(progress)?;
     let fresh = sets::fresh(rig, hand, ERROR_SCENES, Augment::No);
-    let estimator = estimator.learn_errors(&fresh, progress)?;
+    let estimator = trained(&PRESET.training(), &train, Some(&fresh), progress)?.estimator;
     let refiner = Refiner::new(rig, hand, &fresh.poses, Refinement::default())?;
     let [nearest, middles] = from_neighbours(&estimator, &train, questions, progress)?;
     let found = hypotheses(&estimator, &refiner, questions, progress)?;

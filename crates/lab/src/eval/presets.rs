@@ -12,10 +12,12 @@ use crate::eval::held_out::Ground;
 use crate::eval::held_out::errors::mean_error_deg;
 use crate::eval::refining::{Look, Refining};
 use crate::files;
+use crate::page::Page;
 use crate::progress;
 use crate::recipes::preset_name::PresetName;
 
-const PAGE: &str = "docs/presets.md";
+const PAGE: Page<'_> =
+    Page { file: "presets.md", command: "cargo xtask presets", title: "The presets" };
 const TESTS: [Test; 2] = [Test::Unseen, Test::All];
 /// Of so many samples of a test one is looked at; shares no factor with the hands in `all`.
 const EVERY: usize = 5;
@@ -65,10 +67,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         errors.add_row(error);
     }
     drop(bar);
-    let page = format!(
-        "<!-- Written by `cargo xtask presets`; not to be edited. -->\n\
-         # The presets\n\n\
-         Learnt through three views on {} cores by `cargo xtask train --preset NAME --hypotheses`, each in\n\
+    let body = format!(
+        "Learnt through three views on {} cores by `cargo xtask train --preset NAME --hypotheses`, each in\n\
          a process of its own. Times of estimates are milliseconds of one thread, from three silhouettes\n\
          of 120×90 to a pose, over every {EVERY}th sample of `unseen`; those of refinement come on top, and\n\
          are longer in `all`, where hand and cameras have to be doubted.\n\n{costs}\n\n\
@@ -76,8 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
          with the mean hand.\n\n{errors}\n",
         std::thread::available_parallelism().map_or(1, usize::from),
     );
-    files::write_whole(&files::in_repository(PAGE), page.as_bytes())?;
-    files::print(&page)
+    PAGE.publish(&body)
 }
 
 /// A preset's line in the tables of costs and of errors.

@@ -11,7 +11,6 @@ use phalanx_rvm::{
     AgarwalTriggs, Bandwidth, BasisSpec, Fit, Kernel, MultiOutputRvm, NystromRidge,
     OrthogonalLeastSquares, PilotSample, Ridge, Stop, SufficientStatistics, random_subset,
 };
-use std::fmt::Write;
 
 use crate::clock::timed;
 use crate::data::described::Samples;
@@ -20,9 +19,11 @@ use crate::eval::held_out::errors::active_angles;
 use crate::eval::held_out::learner::{codebooks, describe, pilot_contexts};
 use crate::files;
 use crate::metrics::{AngleErrors, mean_predictor};
+use crate::page::Page;
 use crate::progress;
 
-const PAGE: &str = "docs/selection.md";
+const PAGE: Page<'_> =
+    Page { file: "selection.md", command: "cargo xtask selection", title: "Which samples to keep" };
 /// Training samples, every one of which could be kept.
 const SAMPLES: usize = 3000;
 const KEPT: [usize; 3] = [40, 100, 300];
@@ -143,9 +144,7 @@ pub(crate) fn run(_: &Arguments) -> Result<()> {
             table.add_row(row);
         }
     }
-    let page = page(&table)?;
-    files::write_whole(&files::in_repository(PAGE), page.as_bytes())?;
-    files::print(&page)
+    PAGE.publish(&body(&table))
 }
 
 /// The mean error over the active angles and, in brackets, over the mean predictor's.
@@ -158,16 +157,12 @@ fn compared(estimates: &Mat<f64>, learnt: &Samples, test: &Samples) -> String {
     format!("{mae:.2} ({:.2})", mae / guessed)
 }
 
-fn page(table: &Table) -> Result<String> {
-    let mut page = String::new();
-    writeln!(
-        page,
-        "# Which samples to keep\n\n\
-         Written by `cargo xtask selection`: mean absolute error over the 21 active angles and, in\n\
-         brackets, over that of predicting the training mean, against the samples kept and the time\n\
-         that the fit takes. Learnt from {SAMPLES} random poses, augmented, with three views and the\n\
-         paper's descriptors; every sample is a candidate, and every method has Gaussians of the\n\
-         same width.\n\n{table}"
-    )?;
-    Ok(page)
+/// What the page says around its table.
+fn body(table: &Table) -> String {
+    format!(
+        "Mean absolute error over the 21 active angles and, in brackets, over that of predicting the training\n\
+         mean, against the samples kept and the time that the fit takes. Learnt from {SAMPLES} random poses,\n\
+         augmented, with three views and the paper's descriptors; every sample is a candidate, and every\n\
+         method has Gaussians of the same width.\n\n{table}\n"
+    )
 }

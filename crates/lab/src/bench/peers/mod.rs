@@ -18,8 +18,15 @@ use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
 
 use crate::files;
+use crate::page::Page;
 use peers::Peers;
 use row::Row;
+
+const PAGE: Page<'_> = Page {
+    file: "peers.md",
+    command: "cargo xtask bench-peers --peers DIR",
+    title: "Beside others",
+};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -75,9 +82,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     if let Some(path) = &arguments.json {
         files::write_whole(path, &serde_json::to_vec_pretty(&rows).context("rows to JSON")?)?;
     }
-    let page = page::page(&rows, &peers);
+    let body = page::body(&rows, &peers);
     if arguments.only.is_empty() {
-        files::write_whole(&files::in_repository("docs/peers.md"), page.as_bytes())?;
+        PAGE.write(&body)?;
     }
-    files::print(&page)
+    files::print(&PAGE.text(&body))
 }

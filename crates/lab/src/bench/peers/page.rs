@@ -6,7 +6,7 @@ use super::peers::Peers;
 use super::row::{Figure, Row, Target, Verdict};
 
 /// The page, which says what of it was missed.
-pub(crate) fn page(rows: &[Row], peers: &Peers) -> String {
+pub(crate) fn body(rows: &[Row], peers: &Peers) -> String {
     let packages: Vec<String> = peers
         .versions()
         .into_iter()
@@ -14,9 +14,7 @@ pub(crate) fn page(rows: &[Row], peers: &Peers) -> String {
         .collect();
     let count = |verdict| rows.iter().filter(|row| row.verdict() == verdict).count();
     format!(
-        "<!-- Written by `cargo xtask bench-peers --peers DIR`; not to be edited. -->\n\
-         # Beside others\n\n\
-         The best packages that do the same, and ours, on the same data in one run, one thread each,\n\
+        "The best packages that do the same, and ours, on the same data in one run, one thread each,\n\
          in turns. Times are CPU time, medians of three runs or more. Evidence is in nats, of\n\
          standardised targets, at each fit's own precisions and noise, a flat bias integrated out.\n\
          The Gaussian process has one width for all inputs, ours one for each. An iteration of K-means of\n\

@@ -4,8 +4,8 @@ use anyhow::{Context, Result};
 use faer::Mat;
 use image::GrayImage;
 use phalanx::{
-    Estimator, Framing, Picture, Preset, Progress, Refiner, SceneDescriber, Scenes, Shard,
-    Training, Workspace, targets,
+    Estimator, Framing, Picture, Preset, Progress, Refiner, SceneDescriber, Scenes, Training,
+    Workspace, targets,
 };
 use phalanx_hand::{Dof, Pose};
 use phalanx_refine::{Doubt, Refinement};
@@ -18,6 +18,7 @@ use super::refined::{self, Starts};
 use super::row::{Outcome, Row};
 use crate::data::sets::{self, Set};
 use crate::eval::table1::single_view;
+use crate::recipes::{Trained, trained};
 
 /// How a learnt preset answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -131,13 +132,8 @@ impl Learnt {
         let rig = ground.rig.select(&names)?;
         let set = sets::for_preset(framing, &rig, &ground.hand, preset.scenes());
         let training = Training { framing, ..preset.training() };
-        let part = training.shard(&rig, &ground.hand, &set, Shard::WHOLE, progress)?;
-        let samples = set.count() - part.losses().count();
-        let mut estimator = part.finish(progress)?;
-        if refines(&answers) {
-            let fresh = sets::fresh_for(framing, &rig, &ground.hand);
-            estimator = estimator.learn_errors(&fresh, progress)?;
-        }
+        let fresh = refines(&answers).then(|| sets::fresh_for(framing, &rig, &ground.hand));
+        let Trained { estimator, samples } = trained(&training, &set, fresh.as_ref(), progress)?;
         let mean = Dof::ALL.map(|dof| {
             set.poses.iter().map(|pose| pose[dof]).sum::<f64>() / set.poses.len() as f64
         });

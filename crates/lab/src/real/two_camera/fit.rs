@@ -2,8 +2,7 @@
 
 use anyhow::{Context, Result};
 use phalanx::{
-    Estimate, Estimator, Framing, Observation, Preset, Progress, Refiner, Shard, Training,
-    Workspace,
+    Estimate, Estimator, Framing, Observation, Preset, Progress, Refiner, Training, Workspace,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
@@ -14,6 +13,7 @@ use rayon::prelude::*;
 
 use super::Seen;
 use crate::data::sets;
+use crate::recipes::trained;
 
 /// Frames that the hand is calibrated on, evenly spaced.
 const CALIBRATED_ON: usize = 20;
@@ -55,9 +55,8 @@ pub(super) fn learn(
 ) -> Result<Learnt> {
     let training = Training { framing: Framing::Window, ..Preset::Fast.training() };
     let set = sets::loosely_placed(rig, hand, samples);
-    let part = training.shard(rig, hand, &set, Shard::WHOLE, progress)?;
     let refiner = Refiner::new(rig, hand, &set.poses, Refinement::of_noise(NOISE_PX))?;
-    Ok(Learnt { estimator: part.finish(progress)?, refiner })
+    Ok(Learnt { estimator: trained(&training, &set, None, progress)?.estimator, refiner })
 }
 
 impl Learnt {

@@ -7,8 +7,8 @@ use anyhow::Result;
 use faer::Mat;
 use image::RgbImage;
 use phalanx::{
-    Estimator, Framing, Observation, Progress, Refiner, Regressor, SceneSubset, Scenes, Shard,
-    Training, Workspace, describe_scenes, targets,
+    Estimator, Framing, Observation, Progress, Refiner, Regressor, SceneSubset, Scenes, Training,
+    Workspace, describe_scenes, targets,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
@@ -23,6 +23,7 @@ use crate::data::sets;
 use crate::eval::held_out::method::nystrom;
 use crate::figures::mosaic::mosaic;
 use crate::files;
+use crate::recipes::trained;
 
 /// Frames that are shown, evenly spaced.
 const SHOWN: usize = 5;
@@ -87,7 +88,7 @@ impl Learning<'_> {
         let training =
             Training { framing: Framing::Window, regressor: nystrom(), ..Training::default() };
         let set = sets::loosely_placed(rig, hand, *samples);
-        Ok(training.shard(rig, hand, &set, Shard::WHOLE, *progress)?.finish(*progress)?)
+        Ok(trained(&training, &set, None, *progress)?.estimator)
     }
 
     /// With the paper's selection, which needs its samples at once, in the same descriptors.
