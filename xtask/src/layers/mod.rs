@@ -10,8 +10,8 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 
-use phalanx_lab::files;
 use modules::Modules;
+use phalanx_lab::files;
 
 /// Crates that do not keep to this yet, each of which is to leave this list.
 const NOT_YET: [&str; 13] = [
