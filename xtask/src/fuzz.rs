@@ -1,4 +1,4 @@
-//! `cargo xtask fuzz`: feeds damaged files to everything that reads files. Writes docs/fuzzing.md.
+//! `cargo xtask fuzz`: feeds damaged files to everything that reads files. Writes docs/results/fuzzing.md.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use clap::Args;
 
 use phalanx_lab::files;
 
-const PAGE: &str = "docs/fuzzing.md";
+const PAGE: &str = "docs/results/fuzzing.md";
 
 /// What no target may hold at once, MiB; fuzz/limit.rs sees to it.
 const MOST_ALLOCATED_MIB: usize = 64;

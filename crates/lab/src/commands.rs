@@ -35,13 +35,13 @@ pub enum Command {
     /// Evaluate real takes, by cameras used, input and method.
     #[command(name = "eval-real")]
     EvalReal(real::Arguments),
-    /// Compare ways of choosing which samples to keep, and write docs/selection.md.
+    /// Compare ways of choosing which samples to keep, and write docs/results/selection.md.
     Selection(selection::Arguments),
-    /// Compare ways of naming several poses for one picture, and write docs/hypotheses.md.
+    /// Compare ways of naming several poses for one picture, and write docs/results/hypotheses.md.
     Hypotheses(hypotheses::Arguments),
-    /// Switch off each part of learning and refining in turn, and write docs/ablation.md.
+    /// Switch off each part of learning and refining in turn, and write docs/results/ablation.md.
     Ablation(ablation::Arguments),
-    /// What the presets cost in time and memory, and how good they are: docs/presets.md.
+    /// What the presets cost in time and memory, and how good they are: docs/results/presets.md.
     Presets(presets::Arguments),
     /// Put one of the paper's figures or claims to the test.
     Experiment(paper::Arguments),
@@ -59,9 +59,9 @@ pub enum Command {
     Fixtures(fixtures::Arguments),
     /// Draw the pictures of the README, and photographs to try the program on.
     Pictures(pictures::Arguments),
-    /// Measure our crates beside their best peers, and write docs/peers.md.
+    /// Measure our crates beside their best peers, and write docs/results/peers.md.
     BenchPeers(peers::Arguments),
-    /// Time every stage and write docs/performance.md.
+    /// Time every stage and write docs/results/performance.md.
     Performance(performance::Arguments),
 }
 

@@ -22,7 +22,7 @@ impl Page<'_> {
 
     /// Writes the page, and nothing else.
     pub(crate) fn write(&self, body: &str) -> Result<()> {
-        let path = files::in_repository("docs").join(self.file);
+        let path = files::in_repository("docs/results").join(self.file);
         files::write_whole(&path, self.text(body).as_bytes())
     }
 

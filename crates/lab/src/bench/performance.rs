@@ -1,4 +1,4 @@
-//! `cargo xtask performance`: times every stage and writes docs/performance.md.
+//! `cargo xtask performance`: times every stage and writes docs/results/performance.md.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -155,7 +155,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         if arguments.quick { "cargo xtask performance --quick" } else { "cargo xtask performance" };
     let page = Page { file: "performance.md", command, title: "Performance" };
     page.write(&body(command, &medians, &scale::section()?)?)?;
-    files::print(&format!("docs/{}: {} benchmarks\n", page.file, medians.len()))
+    files::print(&format!("docs/results/{}: {} benchmarks\n", page.file, medians.len()))
 }
 
 /// Runs the benchmarks; criterion leaves its figures in `results`.

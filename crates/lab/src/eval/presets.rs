@@ -1,4 +1,4 @@
-//! `cargo xtask presets`: what the presets cost and how good they are; writes docs/presets.md.
+//! `cargo xtask presets`: what the presets cost and how good they are; writes docs/results/presets.md.
 
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};

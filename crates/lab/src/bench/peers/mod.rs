@@ -1,5 +1,5 @@
 //! `cargo xtask bench-peers`: our crates beside the best packages that do the same, on the same
-//! data, in one run and on one thread each. Writes docs/peers.md.
+//! data, in one run and on one thread each. Writes docs/results/peers.md.
 
 mod data;
 mod hand;
@@ -33,7 +33,7 @@ pub struct Arguments {
     /// The folder of the peers' scripts.
     #[arg(long, value_name = "DIR")]
     peers: PathBuf,
-    /// Only these parts; the page is then printed and docs/peers.md left as it is.
+    /// Only these parts; the page is then printed and docs/results/peers.md left as it is.
     #[arg(long, value_delimiter = ',')]
     only: Vec<Part>,
     /// Also write the rows to this file.
