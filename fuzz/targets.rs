@@ -4,9 +4,12 @@
 use glam::DAffine3;
 use image::GrayImage;
 use phalanx::{Error, Estimator, Part, decode_picture};
-use phalanx_camera::{Rig, cameras_from_opencv_json};
+use phalanx_camera::Rig;
 use phalanx_codebook::{AnyCoding, Coding, Scratch};
 use phalanx_hand::{HandShape, Pose, PoseTable};
+use phalanx_io::calibration::{
+    Calibration, Missing, Source, Unit, to_anipose_toml, to_opencv_yaml,
+};
 use phalanx_segmentation::{Cleanup, Silhouette, SkinModel, WristModel, clean};
 
 /// A target's name, which is also its corpus's, and what it does.
@@ -67,9 +70,22 @@ pub(crate) fn rig(data: &[u8]) {
     }
 }
 
+/// A file, or two that complete each other, with a separator between them.
 pub(crate) fn calibration(data: &[u8]) {
-    let Ok(text) = std::str::from_utf8(data) else { return };
-    let _ = cameras_from_opencv_json(text, 25.0);
+    let files: Vec<Source<'_>> = data
+        .splitn(2, |&byte| byte == 0x1c)
+        .map(|bytes| Source { name: "cameras", bytes })
+        .collect();
+    let squares = Missing { unit: Unit::of_mm(25.0).ok(), size: Some((1280, 720)) };
+    for missing in [Missing::default(), squares] {
+        let Ok(Calibration { cameras, .. }) = Calibration::read(&files, &missing) else { continue };
+        for text in [to_anipose_toml(&cameras), to_opencv_yaml(&cameras)] {
+            let file = Source { name: "written", bytes: text.as_bytes() };
+            let again = Calibration::read(&[file], &Missing::default());
+            let again = again.expect("what was read can be written and read again");
+            assert_eq!(again.cameras.len(), cameras.len());
+        }
+    }
 }
 
 pub(crate) fn hand(data: &[u8]) {

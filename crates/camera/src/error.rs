@@ -15,24 +15,6 @@ pub enum Error {
         /// The parser's message, with the line at fault.
         message: String,
     },
-    /// The text is no calibration in JSON, or misses a key.
-    #[error("calibration: {message}")]
-    Json {
-        /// The parser's message, with the line at fault.
-        message: String,
-    },
-    /// The unit of a calibration's lengths is not one.
-    #[error("calibration: a unit of {unit_mm} mm is no length")]
-    Unit {
-        /// The unit, mm.
-        unit_mm: f64,
-    },
-    /// A camera matrix that is not one of a camera without skew.
-    #[error("camera `{camera}`: camera_matrix is not [fx 0 cx; 0 fy cy; 0 0 1]")]
-    CameraMatrix {
-        /// The camera.
-        camera: String,
-    },
     /// A number of distortion coefficients that no lens model has.
     #[error(
         "camera `{camera}`: {found} distortion coefficients: OpenCV's are 4, 5, 8, 12 or 14, and a \
@@ -195,6 +177,19 @@ pub enum Error {
     VolumeOutside {
         /// The camera.
         camera: String,
+    },
+    /// A hand in the middle of the volume would be absurdly small or large in a camera's picture.
+    #[error(
+        "camera `{camera}`: a hand of 190 mm would be {px:.0} px long in its picture, {distance:.0} mm \
+         away: is the unit of length right, and the volume's center_mm?"
+    )]
+    HandSize {
+        /// The camera.
+        camera: String,
+        /// How long the hand would be, px.
+        px: f64,
+        /// From the camera to the middle of the volume, mm.
+        distance: f64,
     },
     /// A window to crop to is empty or reaches beyond the image.
     #[error("the window {width}×{height} at ({x}, {y}) is not inside the image {image:?}")]

@@ -6,11 +6,11 @@ mod extrinsics;
 mod file;
 mod intrinsics;
 mod lens;
-mod opencv;
 #[cfg(test)]
 #[path = "../tests/property/mod.rs"]
 mod property;
 mod rig;
+mod scale;
 mod triangulate;
 mod virtual_camera;
 mod volume;
@@ -20,8 +20,8 @@ pub use error::{Error, Result};
 pub use extrinsics::Extrinsics;
 pub use intrinsics::Intrinsics;
 pub use lens::{Distortion, Fisheye, Lens};
-pub use opencv::cameras_from_opencv_json;
 pub use rig::Rig;
+pub use scale::{ViewAngle, ViewScale};
 pub use triangulate::{Triangulation, triangulate};
 pub use virtual_camera::PixelMap;
 pub use volume::Volume;

@@ -2,7 +2,7 @@
 
 use phalanx_camera::{
     Camera, Distortion, Error, Extrinsics, Fisheye, Intrinsics, Lens, PixelMap, Ray, Rig,
-    Triangulation, Volume,
+    Triangulation, ViewAngle, ViewScale, Volume,
 };
 
 const fn shared<T: Send + Sync>() {}
@@ -24,5 +24,7 @@ shared!(
     Ray,
     Rig,
     Triangulation,
+    ViewAngle,
+    ViewScale,
     Volume,
 );

@@ -237,6 +237,34 @@ fn volumes_that_make_no_sense_are_refused_by_name() {
 }
 
 #[test]
+fn a_hand_is_as_large_as_focal_length_and_distance_say() {
+    let desk = Rig::from_toml(DESK).unwrap();
+    for (scale, camera) in desk.view_scales().unwrap().iter().zip(&desk.cameras) {
+        let away = (camera.centre() - desk.volume.center).length();
+        assert!((scale.distance - away).abs() < 1e-9);
+        // A little off the axis, by 70 in 700 mm, the picture is enlarged by 1 / cos^1.5 of the angle.
+        let expected = camera.intrinsics.fx / away * (away / 700.0).powf(1.5);
+        assert!((scale.px_per_mm / expected - 1.0).abs() < 1e-3, "{scale:?} is not {expected}");
+    }
+    let angles: Vec<f64> =
+        desk.view_angles().iter().map(|a| a.angle.to_degrees().round()).collect();
+    assert_eq!(angles, [70.0, 138.0, 70.0]);
+}
+
+#[test]
+fn absurd_sizes_of_hands_are_refused_by_name() {
+    let with_height = |mm: &str| {
+        let at = format!("position_mm = [0, {mm}, 0]");
+        edited(&[("position_mm = [0, 700, 0]", &at)]).unwrap().view_scales()
+    };
+    for (height, length) in [("20", "2518 px"), ("9000", "6 px")] {
+        let message = with_height(height).unwrap_err().to_string();
+        assert!(message.contains("camera `top`") && message.contains(length), "{message}");
+    }
+    assert!(with_height("120").is_ok() && with_height("3500").is_ok());
+}
+
+#[test]
 fn keys_are_checked() {
     for (from, to, word) in [
         ("width = 120", "widht = 120", "widht"),

@@ -6,6 +6,7 @@ mod import_calibration;
 mod input;
 mod output;
 mod progress;
+mod rig;
 mod train;
 
 use std::process::ExitCode;
@@ -32,7 +33,10 @@ enum Command {
     Estimate(estimate::Arguments),
     /// Fit the proportions of a person's hand to pictures of it.
     CalibrateHand(calibrate_hand::Arguments),
-    /// Make a rig file of a calibration in OpenCV's conventions.
+    /// Rigs of cameras, from other tools and for them.
+    #[command(subcommand)]
+    Rig(rig::Command),
+    /// Make a rig file of a calibration (the older name of `rig import`).
     ImportCalibration(import_calibration::Arguments),
 }
 
@@ -42,6 +46,7 @@ fn main() -> ExitCode {
         Command::Merge(arguments) => train::merge(&arguments),
         Command::Estimate(arguments) => estimate::run(&arguments),
         Command::CalibrateHand(arguments) => calibrate_hand::run(&arguments),
+        Command::Rig(command) => rig::run(&command),
         Command::ImportCalibration(arguments) => import_calibration::run(&arguments),
     };
     match done {

@@ -5,4 +5,5 @@ mod desk;
 mod estimates;
 mod refinements;
 mod refusals;
+mod rigs;
 mod trainings;

@@ -1,5 +1,6 @@
 //! Files in which each key names a field and a camera: `K_01`, `dist_01`, `M1`, `D1`, `left_K`.
 
+use crate::calibration::MOST_CAMERAS;
 use crate::calibration::fields::Field;
 use crate::calibration::layout::Map2;
 use crate::calibration::value::{Map, Value, get};
@@ -26,11 +27,10 @@ pub(super) fn sections(root: &Map) -> Option<(Map2, Vec<String>)> {
     let mut sections = Map2::new();
     let mut shared = Map::new();
     let mut unknown = Vec::new();
-    for name in listed(root) {
-        sections.push((name, Map::new()));
-    }
+    let names = listed(root);
+    sections.extend(names.iter().map(|name| (name.clone(), Map::new())));
     for (key, value) in root {
-        match split(key, value) {
+        match split(key, value, &names) {
             // Rotations of the rectified views are none of the cameras.
             Some((field, _)) if is_rectified && matches!(field, "R" | "P") => {}
             Some((field, name)) => add(&mut sections, name, field, value),
@@ -60,7 +60,9 @@ pub(super) fn sections(root: &Map) -> Option<(Map2, Vec<String>)> {
 /// The names that a file lists, in their order.
 fn listed(root: &Map) -> Vec<String> {
     match get(root, "names") {
-        Some(Value::List(names)) => names.iter().filter_map(Value::as_text).collect(),
+        Some(Value::List(names)) if names.len() <= MOST_CAMERAS => {
+            names.iter().filter_map(Value::as_text).collect()
+        }
         _ => Vec::new(),
     }
 }
@@ -81,8 +83,15 @@ fn by_camera(key: &str, value: &Value) -> bool {
 }
 
 /// The field and the camera of a key.
-fn split<'a>(key: &'a str, value: &Value) -> Option<(&'a str, String)> {
+fn split<'a>(key: &'a str, value: &Value, names: &[String]) -> Option<(&'a str, String)> {
     let count = value.numbers()?.len();
+    let of = |name: &String| {
+        let field = key.strip_suffix(name.as_str())?.strip_suffix('_')?;
+        FIELDS.contains(&Field::of(field)).then(|| (field, name.clone()))
+    };
+    if let Some(found) = names.iter().find_map(of) {
+        return Some(found);
+    }
     // `k1` is a coefficient where it is one number, and a matrix of camera 1 where it is nine.
     if count == 1 && Field::of(key) != Field::Unknown {
         return None;

@@ -3,7 +3,7 @@
 use crate::calibration::document::Document;
 use crate::calibration::fields::{Field, Fields, is_camera};
 use crate::calibration::unit::Unit;
-use crate::calibration::value::{Map, Value, get, repeated_key};
+use crate::calibration::value::{Map, Value, get, repeated_name};
 use crate::calibration::{chain, flat};
 use crate::error::{Error, Result};
 
@@ -109,7 +109,7 @@ pub(super) fn lists_by_name(root: Map) -> Result<Map> {
                 let own = Fields::of("", &map).own_name();
                 cameras.push((own.unwrap_or_else(|| format!("cam{index}")), Value::Map(map)));
             }
-            match repeated_key(&cameras) {
+            match repeated_name(&cameras) {
                 Some(name) => {
                     Err(phalanx_camera::Error::DuplicateName { camera: name.to_owned() }.into())
                 }

@@ -91,10 +91,21 @@ pub(super) fn get<'a>(map: &'a Map, key: &str) -> Option<&'a Value> {
     map.iter().find(|(name, _)| name == key).map(|(_, value)| value)
 }
 
-/// A key that stands twice.
-pub(super) fn repeated_key(map: &Map) -> Option<&str> {
+/// The most names at one place: more than all cameras that are read can have.
+const MOST_NAMES: usize = 4096;
+
+/// What is wrong with the names at one place: one that stands twice, or too many of them.
+pub(super) fn wrong_names(map: &Map) -> Option<String> {
+    if map.len() > MOST_NAMES {
+        return Some(format!("{} names at one place; at most {MOST_NAMES} are read", map.len()));
+    }
+    repeated_name(map).map(|name| format!("`{name}` stands twice"))
+}
+
+/// A name that stands twice.
+pub(super) fn repeated_name(map: &Map) -> Option<&str> {
     let mut seen = BTreeSet::new();
-    map.iter().map(|(key, _)| key.as_str()).find(|key| !seen.insert(*key))
+    map.iter().map(|(name, _)| name.as_str()).find(|name| !seen.insert(*name))
 }
 
 impl<'de> Deserialize<'de> for Value {
@@ -149,8 +160,8 @@ impl<'de> Visitor<'de> for AnyValue {
         while let Some(entry) = entries.next_entry()? {
             map.push(entry);
         }
-        match repeated_key(&map) {
-            Some(key) => Err(A::Error::custom(format!("`{key}` stands twice"))),
+        match wrong_names(&map) {
+            Some(what) => Err(A::Error::custom(what)),
             None => Ok(Value::Map(map)),
         }
     }

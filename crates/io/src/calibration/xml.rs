@@ -4,7 +4,7 @@ use glam::{DMat3, DQuat, DVec3};
 use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::calibration::record::{CameraMatrix, Pose, Record};
-use crate::calibration::value::{Map, Value, repeated_key};
+use crate::calibration::value::{Map, Value, wrong_names};
 use crate::error::{Error, Result};
 
 /// The most elements and texts that a file may hold.
@@ -81,8 +81,8 @@ fn value(node: Node<'_, '_>, depth: usize) -> Result<Value> {
         Ok((name.to_owned(), value(child, depth + 1)?))
     };
     let map: Map = children(node).map(entry).collect::<Result<_>>()?;
-    match repeated_key(&map) {
-        Some(key) => Err(Error::calibration(format!("`{key}` stands twice"))),
+    match wrong_names(&map) {
+        Some(what) => Err(Error::calibration(what)),
         None => Ok(Value::Map(map)),
     }
 }

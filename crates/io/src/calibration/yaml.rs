@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use granit_parser::{Event, Parser, ScalarStyle};
 
-use crate::calibration::value::{Map, Value, repeated_key};
+use crate::calibration::value::{Map, Value, wrong_names};
 use crate::error::{Error, Result};
 
 /// How deep lists and mappings may be nested.
@@ -68,8 +68,8 @@ impl Builder {
                 let Some(Open { anchor, items }) = self.open.pop() else { return Ok(None) };
                 let value = match items {
                     Items::List(list) => Value::List(list),
-                    Items::Map(map, _) => match repeated_key(&map) {
-                        Some(key) => return Err(format!("`{key}` stands twice")),
+                    Items::Map(map, _) => match wrong_names(&map) {
+                        Some(what) => return Err(what),
                         None => Value::Map(map),
                     },
                 };
@@ -116,9 +116,10 @@ impl Builder {
     }
 }
 
-/// How many values a value holds.
+/// How many values a value holds, a long text counted as several.
 fn size(value: &Value) -> usize {
     1 + match value {
+        Value::Text(text) => text.len() / 32,
         Value::List(list) => list.iter().map(size).sum(),
         Value::Map(map) => map.iter().map(|(_, value)| size(value)).sum(),
         _ => 0,

@@ -15,8 +15,9 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::ValueEnum;
 use image::DynamicImage;
 use phalanx::decode_picture;
-use phalanx_camera::{Camera, cameras_from_opencv_json};
+use phalanx_camera::Camera;
 use phalanx_hand::Side;
+use phalanx_io::calibration::{Calibration, Missing, Source, Unit};
 use serde::Deserialize;
 
 use super::frame::FrameName;
@@ -107,9 +108,12 @@ impl Take {
         let facts: Facts =
             serde_json::from_str(&facts).with_context(|| path.display().to_string())?;
         let (path, calibration) = text("calibration.json")?;
-        let cameras = cameras_from_opencv_json(&calibration, facts.unit_mm)
-            .with_context(|| path.display().to_string())?;
-        let cameras = cameras.into_iter().map(|camera| TakeCamera::read(folder, camera));
+        let file = Source { name: "calibration.json", bytes: calibration.as_bytes() };
+        let missing = Missing { unit: Some(Unit::of_mm(facts.unit_mm)?), size: None };
+        let calibration =
+            Calibration::read(&[file], &missing).with_context(|| path.display().to_string())?;
+        let cameras =
+            calibration.cameras.into_iter().map(|camera| TakeCamera::read(folder, camera));
         let name = folder.file_name().context("a take's folder has a name")?;
         Ok(Self {
             name: name.to_string_lossy().into_owned(),

@@ -1,0 +1,110 @@
+//! `phalanx rig check`.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use clap::Args;
+use phalanx_camera::{Rig, ViewAngle, ViewScale};
+use serde::Serialize;
+
+use crate::output;
+
+/// Two views nearer than this see a hand alike, degrees: a triangulated point is then five times less
+/// sure along the view than across it (1 / tan 11°).
+const ALIKE_DEGREES: f64 = 11.0;
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The rig.
+    #[arg(value_name = "RIG.toml")]
+    rig: PathBuf,
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report {
+    views: Vec<View>,
+    pairs: Vec<Pair>,
+}
+
+/// How a camera sees the middle of the volume.
+#[derive(Serialize)]
+struct View {
+    camera: String,
+    distance_mm: f64,
+    px_per_mm: f64,
+    /// How long a hand of 190 mm is.
+    hand_px: f64,
+}
+
+/// Between two cameras' lines of sight.
+#[derive(Serialize)]
+struct Pair {
+    cameras: [String; 2],
+    angle_deg: f64,
+}
+
+/// Reads a rig file, which errors name.
+pub(crate) fn read(path: &Path) -> Result<Rig> {
+    let named = || path.display().to_string();
+    let text = std::fs::read_to_string(path).with_context(named)?;
+    Rig::from_toml(&text).with_context(named)
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let rig = read(&arguments.rig)?;
+    let scales = rig.view_scales().with_context(|| arguments.rig.display().to_string())?;
+    let report = Report {
+        views: scales.into_iter().map(View::of).collect(),
+        pairs: rig.view_angles().into_iter().map(Pair::of).collect(),
+    };
+    for pair in report.pairs.iter().filter(|pair| pair.angle_deg < ALIKE_DEGREES) {
+        let [first, second] = &pair.cameras;
+        eprintln!(
+            "doubt: {first} and {second} look from nearly the same side ({:.0}°): together they hardly \
+             tell how far away a hand is",
+            pair.angle_deg
+        );
+    }
+    if arguments.json {
+        output::print(&(serde_json::to_string_pretty(&report)? + "\n"))
+    } else {
+        output::print(&report.table()?)
+    }
+}
+
+impl View {
+    fn of(scale: ViewScale) -> Self {
+        let hand_px = scale.hand_px();
+        let ViewScale { camera, distance: distance_mm, px_per_mm } = scale;
+        Self { camera, distance_mm, px_per_mm, hand_px }
+    }
+}
+
+impl Pair {
+    fn of(pair: ViewAngle) -> Self {
+        let ViewAngle { first, second, angle } = pair;
+        Self { cameras: [first, second], angle_deg: angle.to_degrees() }
+    }
+}
+
+impl Report {
+    fn table(&self) -> Result<String> {
+        let names = self.views.iter().map(|view| view.camera.chars().count());
+        let wide = names.max().unwrap_or_default().max("camera".len());
+        let mut text = format!(
+            "{:wide$}  {:>12}  {:>9}  {:>15}\n",
+            "camera", "distance, mm", "px per mm", "190 mm hand, px"
+        );
+        for View { camera, distance_mm, px_per_mm, hand_px } in &self.views {
+            writeln!(text, "{camera:wide$}  {distance_mm:12.0}  {px_per_mm:9.2}  {hand_px:15.0}")?;
+        }
+        for Pair { cameras: [first, second], angle_deg } in &self.pairs {
+            writeln!(text, "{first} and {second} look from {angle_deg:.0}° apart")?;
+        }
+        Ok(text)
+    }
+}

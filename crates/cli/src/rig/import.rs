@@ -1,0 +1,86 @@
+//! `phalanx rig import`.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use clap::Args;
+use phalanx_camera::Rig;
+use phalanx_io::calibration::{Missing, Unit, camera_distances};
+
+use crate::output;
+use crate::rig::calibration;
+use crate::rig::volume::{Vector, VolumeArguments};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The calibration: one file, intrinsics and extrinsics, or a file a camera. Files of Anipose,
+    /// FreeMoCap, Caliscope, Pose2Sim, OpenCV, EasyMocap, Kalibr, multical, COLMAP, Qualisys, Vicon, CMU
+    /// Panoptic, bioCV and phalanx are recognised by what they hold.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// What a length of 1 is in the calibration: mm, cm, m, or a number of millimetres, such as a
+    /// square of the chessboard. Few files say it.
+    #[arg(long, value_name = "mm|cm|m|MM")]
+    unit: Option<Unit>,
+    /// The same as --unit with a number.
+    #[arg(long, value_name = "MM", conflicts_with = "unit", value_parser = square)]
+    square_mm: Option<Unit>,
+    /// Width and height of the pictures, px, where the calibration does not say them.
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<(u32, u32)>,
+    #[command(flatten)]
+    volume: VolumeArguments,
+    /// The box in which the wrist moves, mm; 300 on each side by default.
+    #[arg(long, value_name = "X,Y,Z")]
+    volume_size: Option<Vector>,
+    /// Where the rig goes.
+    #[arg(long, value_name = "FILE.toml")]
+    out: PathBuf,
+}
+
+fn square(text: &str) -> Result<Unit> {
+    let mm = text.trim().parse().context("expected a number of millimetres")?;
+    Ok(Unit::of_mm(mm)?)
+}
+
+fn size(text: &str) -> Result<(u32, u32)> {
+    let sides =
+        text.split_once(['x', 'X', '×']).context("expected WIDTHxHEIGHT, such as 1280x720")?;
+    Ok((sides.0.trim().parse()?, sides.1.trim().parse()?))
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let Arguments { files, unit, square_mm, size, volume, volume_size, out } = arguments;
+    let missing = Missing { unit: unit.or(*square_mm), size: *size };
+    let calibration = calibration::read(files, &missing)?;
+    for note in &calibration.notes {
+        eprintln!("note: {note}");
+    }
+    // Before the volume, so that a wrong unit shows.
+    for pair in camera_distances(&calibration.cameras) {
+        eprintln!("{} and {}: {:.0} mm apart", pair.first, pair.second, pair.mm);
+    }
+    let named = || calibration::named(files);
+    let known = calibration.volume;
+    let volume_of_hand =
+        volume.of(*volume_size, known, &calibration.cameras).with_context(named)?;
+    let rig = Rig { cameras: calibration.cameras, volume: volume_of_hand };
+    let text = rig.to_toml().with_context(named)?;
+    for scale in rig.view_scales().with_context(named)? {
+        eprintln!(
+            "{}: a hand of 190 mm is {:.0} px long in the picture, {:.0} mm away",
+            scale.camera,
+            scale.hand_px(),
+            scale.distance
+        );
+    }
+    let missing = volume.not_given();
+    if known.is_none() && !missing.is_empty() {
+        eprintln!(
+            "note: where the hand works was not given ({}) and is guessed: look at [volume] in {}",
+            missing.join(", "),
+            out.display()
+        );
+    }
+    output::write_whole(out, text.as_bytes())
+}

@@ -1,0 +1,147 @@
+//! `phalanx rig`: from other tools' calibrations to rig files, and back.
+
+use phalanx_camera::{Lens, Rig};
+use tempfile::TempDir;
+
+use crate::desk::{Outcome, run};
+
+/// Two cameras half a metre from the hand, as Caliscope writes them, in metres; one is a fisheye.
+const CALISCOPE: &str = "
+[cameras.0]
+cam_id = 0
+fisheye = true
+size = [1280, 720]
+matrix = [[500.0, 0.0, 639.5], [0.0, 500.0, 359.5], [0.0, 0.0, 1.0]]
+distortions = [-0.01, 0.002, 0.0, 0.0]
+rotation = [0.0, 0.0, 0.0]
+translation = [0.0, 0.0, 0.5]
+
+[cameras.1]
+cam_id = 1
+fisheye = false
+size = [1280, 720]
+matrix = [[900.0, 0.0, 639.5], [0.0, 900.0, 359.5], [0.0, 0.0, 1.0]]
+distortions = [-0.1, 0.02, 0.001, -0.002, 0.0]
+rotation = [0.0, 1.0, 0.0]
+translation = [0.0, 0.0, 0.6]
+odd_key = 3
+";
+
+struct Folder(TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        let folder = TempDir::new().unwrap();
+        std::fs::write(folder.path().join("camera_array.toml"), CALISCOPE).unwrap();
+        Self(folder)
+    }
+
+    fn run(&self, arguments: &str) -> Outcome {
+        run(self.0.path(), ["rig"].into_iter().chain(arguments.split_whitespace()))
+    }
+
+    fn read(&self, name: &str) -> Option<String> {
+        std::fs::read_to_string(self.0.path().join(name)).ok()
+    }
+}
+
+#[test]
+fn a_calibration_becomes_a_rig_and_says_what_to_look_at() {
+    let folder = Folder::new();
+    let outcome = folder.run("import camera_array.toml --unit m --out rig.toml");
+    assert_eq!((outcome.code, outcome.out.as_str()), (Some(0), ""), "{}", outcome.err);
+    for part in [
+        "note: not known and passed over: odd_key",
+        "cam_0 and cam_1: 535 mm apart",
+        "cam_0: a hand of 190 mm is 190 px long in the picture, 500 mm away",
+        "where the hand works was not given (--center, --forearm, --up) and is guessed",
+    ] {
+        assert!(outcome.err.contains(part), "no '{part}' in: {}", outcome.err);
+    }
+    let rig = Rig::from_toml(&folder.read("rig.toml").unwrap()).unwrap();
+    assert!(matches!(rig.cameras[0].intrinsics.lens, Lens::Fisheye(_)));
+    assert_eq!(rig.cameras[1].extrinsics.translation.z, 600.0);
+    // A rig is a calibration too, which says its unit and its volume.
+    let again = folder.run("import rig.toml --volume-size 80,90,100 --out again.toml");
+    assert_eq!(again.code, Some(0), "{}", again.err);
+    assert!(!again.err.contains("is guessed"), "{}", again.err);
+    let again = Rig::from_toml(&folder.read("again.toml").unwrap()).unwrap();
+    assert_eq!((again.volume.center, again.volume.size.y), (rig.volume.center, 90.0));
+}
+
+#[test]
+fn exports_import_to_the_same_rig() {
+    let folder = Folder::new();
+    folder.run("import camera_array.toml --unit m --out rig.toml");
+    for format in ["anipose", "opencv"] {
+        let outcome = folder.run(&format!("export rig.toml --format {format} --out exported"));
+        assert_eq!((outcome.code, outcome.out.as_str()), (Some(0), ""), "{}", outcome.err);
+        let printed = folder.run(&format!("export rig.toml --format {format}"));
+        assert_eq!(Some(printed.out), folder.read("exported"));
+        let outcome = folder.run("import exported --out again.toml");
+        assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+        let rig = |name| Rig::from_toml(&folder.read(name).unwrap()).unwrap();
+        for (camera, again) in rig("rig.toml").cameras.iter().zip(&rig("again.toml").cameras) {
+            assert_eq!((&camera.name, camera.intrinsics), (&again.name, again.intrinsics));
+            assert!(camera.centre().distance(again.centre()) < 1e-9, "{format}");
+        }
+    }
+}
+
+#[test]
+fn a_check_prints_sizes_and_angles() {
+    let folder = Folder::new();
+    folder.run("import camera_array.toml --unit m --out rig.toml");
+    let outcome = folder.run("check rig.toml");
+    assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
+    assert!(outcome.out.contains("cam_0 and cam_1 look from 57° apart"), "{}", outcome.out);
+    let outcome = folder.run("check rig.toml --json");
+    let report: serde_json::Value = serde_json::from_str(&outcome.out).unwrap();
+    assert_eq!(report["views"][1]["camera"], "cam_1");
+    assert!((report["views"][1]["px_per_mm"].as_f64().unwrap() - 1.5).abs() < 0.01, "{report}");
+    assert!((report["pairs"][0]["angle_deg"].as_f64().unwrap() - 57.3).abs() < 0.1, "{report}");
+    // From nearly the same side.
+    let near =
+        folder.read("camera_array.toml").unwrap().replace("[0.0, 1.0, 0.0]", "[0.0, 0.1, 0.0]");
+    std::fs::write(folder.0.path().join("near.toml"), near).unwrap();
+    folder.run(
+        "import near.toml --unit m --center 0,0,0 --forearm 0,1,0 --up 0,0,-1 --out near-rig.toml",
+    );
+    let outcome = folder.run("check near-rig.toml");
+    assert!(
+        outcome.err.contains("doubt: cam_0 and cam_1 look from nearly the same side (6°)"),
+        "{}",
+        outcome.err
+    );
+}
+
+#[test]
+fn what_cannot_be_is_refused_and_nothing_is_written() {
+    let folder = Folder::new();
+    let write = |name: &str, text: &str| std::fs::write(folder.0.path().join(name), text).unwrap();
+    write("omni.toml", &CALISCOPE.replacen("fisheye = true", "model = \"omni\"", 1));
+    write("half.toml", &CALISCOPE.replace("rotation = [0.0, 1.0, 0.0]\n", ""));
+    let volume = "--center 0,0,0 --forearm 0,1,0 --up 0,0,-1";
+    for (arguments, part) in [
+        ("camera_array.toml", "(Caliscope writes metres): give the unit"),
+        ("camera_array.toml --unit mm", "apart, where 20 mm to 20 m are believed"),
+        ("camera_array.toml --unit yard", "`yard` is no unit"),
+        ("camera_array.toml --unit m --square-mm 3", "cannot be used with"),
+        ("camera_array.toml --unit m --size 640", "expected WIDTHxHEIGHT"),
+        ("camera_array.toml --unit m --size 640x480", "size is 1280×720 px in the file"),
+        ("omni.toml --unit m", "omni.toml: camera `cam_0`: model `omni`"),
+        ("half.toml --unit m", "half.toml: camera `cam_1`: rotation is missing"),
+        ("none.toml --unit m", "none.toml: No such file"),
+        ("", "required arguments"),
+    ] {
+        let outcome = folder.run(&format!("import {arguments} --out rig.toml"));
+        assert_eq!((outcome.code, folder.read("rig.toml")), (Some(2), None), "{arguments}");
+        assert!(outcome.err.contains(part), "no '{part}' in: {}", outcome.err);
+    }
+    // A hand a finger's width from the lens.
+    write("one.toml", CALISCOPE.split("[cameras.1]").next().unwrap());
+    let near = volume.replacen("0,0,0", "0,0,-490", 1);
+    let outcome = folder.run(&format!("import one.toml --unit m {near} --out rig.toml"));
+    assert_eq!((outcome.code, folder.read("rig.toml")), (Some(2), None));
+    assert!(outcome.err.contains("a hand of 190 mm would be 9500 px long"), "{}", outcome.err);
+}
