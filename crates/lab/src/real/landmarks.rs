@@ -26,6 +26,7 @@ impl Method for Landmarks<'_> {
                 solids: Vec::new(),
                 deviations: None,
                 doubts: Vec::new(),
+                left_out: Vec::new(),
             }),
             cpu_ms: None, // the detector's would have to be in it
         };

@@ -1,10 +1,11 @@
 //! What every method is given, and what it answers.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, Result};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use image::DynamicImage;
 use phalanx::Progress;
 use phalanx_camera::Camera;
@@ -12,6 +13,8 @@ use phalanx_hand::{HandShape, JOINTS, Pose, Primitive};
 
 use super::deviation::{PoseCovariance, joint_deviations};
 use super::frame::FrameName;
+use super::reference::Points;
+use super::spoil::Spoil;
 use super::take::{Input, Take};
 use crate::clock::thread_ms;
 
@@ -25,6 +28,8 @@ pub struct Sequence<'a> {
     pub input: Input,
     /// The frames, in order.
     pub frames: &'a [FrameName],
+    /// Which masks are spoilt, and the landmarks that it takes to do so, camera by camera.
+    pub spoil: Option<(&'a Spoil, &'a [BTreeMap<FrameName, Points<DVec2>>])>,
 }
 
 impl Sequence<'_> {
@@ -33,13 +38,26 @@ impl Sequence<'_> {
         self.take.cameras(self.views)
     }
 
-    /// The pictures of a frame, one for each camera.
+    /// The pictures of the frame of a number, one for each camera.
     ///
     /// # Errors
     /// A picture that cannot be read; it names the file.
-    pub fn pictures(&self, frame: &FrameName) -> Result<Vec<DynamicImage>> {
-        let picture = |&view: &usize| self.take.cameras[view].picture(frame, self.input);
-        self.views.iter().map(picture).collect()
+    pub fn pictures(&self, number: usize) -> Result<Vec<DynamicImage>> {
+        self.views.iter().map(|&view| self.picture(view, number)).collect()
+    }
+
+    fn picture(&self, view: usize, number: usize) -> Result<DynamicImage> {
+        let camera = &self.take.cameras[view];
+        let spoil = self.spoil.filter(|(spoil, _)| {
+            self.input == Input::Masks && spoil.concerns(&camera.camera.name, number)
+        });
+        let Some((spoil, landmarks)) = spoil else {
+            return camera.picture(&self.frames[number], self.input);
+        };
+        let shown = &self.frames[spoil.taken_from(number, self.frames.len())];
+        let mask = camera.picture(shown, self.input)?.to_luma8();
+        let spoilt = spoil.apply(&mask, landmarks[view].get(shown));
+        Ok(spoilt.with_context(|| format!("{} {shown}", camera.camera.name))?.into())
     }
 }
 
@@ -54,6 +72,8 @@ pub struct Found {
     pub deviations: Option<[DVec3; JOINTS]>,
     /// Why the method doubts it; empty where it does not.
     pub doubts: Vec<String>,
+    /// The names of the cameras whose views it did not use.
+    pub left_out: Vec<String>,
 }
 
 impl Found {
@@ -70,6 +90,7 @@ impl Found {
             solids: posed.primitives,
             deviations: covariance.map(|known| joint_deviations(hand, pose, rest, known)),
             doubts: Vec::new(),
+            left_out: Vec::new(),
         }
     }
 }
@@ -111,19 +132,22 @@ pub fn each_frame<M>(
     let (next, outcomes) = (AtomicUsize::new(0), Mutex::new(Vec::with_capacity(frames.len())));
     let work = || -> Result<()> {
         let mut memory = memory();
-        while let Some(frame) = frames.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let pictures = sequence.pictures(frame)?;
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= frames.len() {
+                return Ok(());
+            }
+            let pictures = sequence.pictures(number)?;
             let (ms, found) = thread_ms(|| look(&mut memory, &pictures));
             let outcome = Outcome { found, cpu_ms: Some(ms) };
             let mut outcomes = outcomes.lock().unwrap_or_else(PoisonError::into_inner);
-            outcomes.push((frame, outcome));
+            outcomes.push((number, outcome));
             progress.step();
         }
-        Ok(())
     };
     on_single_threads(&work)?;
     let mut outcomes = outcomes.into_inner().unwrap_or_else(PoisonError::into_inner);
-    outcomes.sort_by_key(|(frame, _)| *frame);
+    outcomes.sort_by_key(|(number, _)| *number);
     Ok(outcomes.into_iter().map(|(_, outcome)| outcome).collect())
 }
 

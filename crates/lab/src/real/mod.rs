@@ -17,6 +17,7 @@ pub mod report;
 pub mod row;
 pub mod score;
 pub mod sheet;
+pub mod spoil;
 mod statistics;
 mod subsets;
 mod table;
@@ -28,18 +29,20 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
+use glam::DVec2;
 use phalanx::Progress;
 use serde::Serialize;
 
 use crate::files;
 use crate::progress;
 use frame::{FrameName, FrameRanges};
-use method::{Outcome, Sequence};
+use method::{Method, Outcome, Sequence};
 use methods::{MethodName, Prepared};
-use reference::Reference;
+use reference::{Points, Reference};
 use report::Line;
 use row::Row;
 use score::Scorer;
+use spoil::Spoil;
 use statistics::percentile;
 use take::{Input, Take};
 
@@ -67,6 +70,10 @@ pub struct Arguments {
     /// Of so many frames one.
     #[arg(long, value_name = "N", default_value = "1")]
     every: std::num::NonZeroUsize,
+    /// Spoil the masks of a view: KIND:CAMERA or KIND:CAMERA:half for every second frame. Kinds: face (one
+    /// joins the hand), thumb (alone), other (the mask of another frame), nothing.
+    #[arg(long, value_name = "KIND:CAMERA")]
+    spoil: Option<Spoil>,
     /// Write the rows as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -112,11 +119,23 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             notes.push(format!("{}: best constant hand at the wrist {constant:.1} mm", take.name));
         }
     }
-    if let Some(path) = &arguments.json {
-        let rows = Rows { rows: lines.iter().map(|line| &line.row).collect() };
-        files::write_whole(path, (serde_json::to_string_pretty(&rows)? + "\n").as_bytes())?;
-    }
     files::print(&format!("{}\n{}\n", report::table(&lines), notes.join("\n")))
+}
+
+impl Arguments {
+    /// Writes the rows that there are so far, so that a run that is stopped leaves them.
+    fn write_json(&self, lines: &[Line]) -> Result<()> {
+        let Some(path) = &self.json else { return Ok(()) };
+        let rows = Rows { rows: lines.iter().map(|line| &line.row).collect() };
+        files::write_whole(path, (serde_json::to_string_pretty(&rows)? + "\n").as_bytes())
+    }
+}
+
+/// One method to run.
+struct Job {
+    method: MethodName,
+    input: Input,
+    frames: Vec<FrameName>,
 }
 
 /// One take, evaluated.
@@ -131,41 +150,51 @@ struct Evaluation<'a> {
 impl Evaluation<'_> {
     /// A line for each of the cameras used, the input and the method; notes beside them.
     fn run(&self, lines: &mut Vec<Line>, notes: &mut Vec<String>) -> Result<()> {
-        let methods = match &*self.arguments.method {
-            [] => &MethodName::ALL[..],
-            some => some,
-        };
         for views in subsets::of(&self.take.camera_names(), &self.arguments.cameras)? {
-            let with_frames: Vec<MethodName> = methods
-                .iter()
-                .copied()
-                .filter(|method| {
-                    self.inputs(*method)
-                        .any(|input| !self.frames(*method, &views, input).is_empty())
-                })
-                .collect();
+            let jobs = self.jobs(&views);
+            let methods: Vec<MethodName> = jobs.iter().map(|job| job.method).collect();
             let prepared =
-                Prepared::new(self.take, &views, self.reference, &with_frames, self.progress);
-            for input in Input::ALL {
-                for &name in methods.iter().filter(|name| self.inputs(**name).any(|of| of == input))
-                {
-                    let frames = self.frames(name, &views, input);
-                    if !frames.is_empty() {
-                        let sequence =
-                            Sequence { take: self.take, views: &views, input, frames: &frames };
-                        notes.extend(self.line(&sequence, &prepared, name, lines)?);
-                    }
-                }
+                Prepared::new(self.take, &views, self.reference, &methods, self.progress);
+            for Job { method, input, frames } in &jobs {
+                let sequence = Sequence {
+                    take: self.take,
+                    views: &views,
+                    input: *input,
+                    frames,
+                    spoil: self.spoil(),
+                };
+                notes.extend(self.line(&sequence, &*prepared.method(*method), lines)?);
+                self.arguments.write_json(lines)?;
             }
         }
         Ok(())
     }
 
-    /// The inputs of a method that are asked for.
-    fn inputs(&self, method: MethodName) -> impl Iterator<Item = Input> {
-        let only = self.arguments.input;
-        let inputs = method.inputs().iter().copied();
-        inputs.filter(move |input| only.is_none_or(|only| only == *input))
+    /// Every input and method that is asked for and has frames.
+    fn jobs(&self, views: &[usize]) -> Vec<Job> {
+        let methods = match &*self.arguments.method {
+            [] => &MethodName::ALL[..],
+            some => some,
+        };
+        let wanted = |method: &MethodName, input: Input| {
+            self.arguments.input.is_none_or(|only| only == input)
+                && method.inputs().contains(&input)
+        };
+        let job = |input: Input, method: MethodName| {
+            let frames = self.frames(method, views, input);
+            (!frames.is_empty()).then_some(Job { method, input, frames })
+        };
+        let of_input = |input: Input| {
+            methods
+                .iter()
+                .filter(move |method| wanted(method, input))
+                .filter_map(move |&method| job(input, method))
+        };
+        Input::ALL.into_iter().flat_map(of_input).collect()
+    }
+
+    fn spoil(&self) -> Option<(&Spoil, &[BTreeMap<FrameName, Points<DVec2>>])> {
+        Some((self.arguments.spoil.as_ref()?, &self.reference.landmarks))
     }
 
     /// The frames that are asked for; of landmarks those that any of the cameras has some of.
@@ -190,14 +219,16 @@ impl Evaluation<'_> {
     fn line(
         &self,
         sequence: &Sequence<'_>,
-        prepared: &Prepared<'_>,
-        name: MethodName,
+        method: &dyn Method,
         lines: &mut Vec<Line>,
     ) -> Result<Vec<String>> {
-        let method = prepared.method(name);
         let cameras: Vec<String> = sequence.cameras().into_iter().map(|c| c.name).collect();
         let title =
             [&self.take.name, &*cameras.join("+"), sequence.input.name(), method.name()].join("-");
+        let title = match &self.arguments.spoil {
+            Some(spoil) => format!("{title}-{spoil}"),
+            None => title,
+        };
         self.progress.begin(&title, sequence.frames.len());
         let outcomes = method.run(sequence, self.progress)?;
         let scores = self.scorer.frames(sequence, &outcomes)?;
@@ -209,7 +240,8 @@ impl Evaluation<'_> {
         let reprojection_by_view = views.map(|view| percentile(&of_view(view), 50)).collect();
         lines.push(Line { row, reprojection_by_view });
         let mut notes = refusals(&title, &outcomes);
-        if let Some(folder) = &self.arguments.sheets {
+        notes.extend(left_out(&title, &outcomes));
+        if let Some(folder) = self.arguments.sheets.as_ref().filter(|_| is_drawn(&outcomes)) {
             let path = folder.join(format!("{title}.png"));
             let written = sheet::write(&path, sequence, &outcomes, &scores);
             notes.push(written.with_context(|| path.display().to_string())?);
@@ -225,4 +257,24 @@ fn refusals(title: &str, outcomes: &[Outcome]) -> Vec<String> {
         *reasons.entry(format!("{error:#}")).or_insert(0) += 1;
     }
     reasons.iter().map(|(reason, count)| format!("{title}: {count} refused: {reason}")).collect()
+}
+
+/// In how many frames each camera's view was left out.
+fn left_out(title: &str, outcomes: &[Outcome]) -> Vec<String> {
+    let mut cameras = BTreeMap::new();
+    for found in outcomes.iter().filter_map(|outcome| outcome.found.as_ref().ok()) {
+        for camera in &found.left_out {
+            *cameras.entry(camera).or_insert(0) += 1;
+        }
+    }
+    let count = outcomes.len();
+    cameras
+        .iter()
+        .map(|(of, times)| format!("{title}: {of} left out in {times} of {count}"))
+        .collect()
+}
+
+/// Whether there is a hand to draw.
+fn is_drawn(outcomes: &[Outcome]) -> bool {
+    outcomes.iter().any(|outcome| outcome.found.as_ref().is_ok_and(|own| !own.solids.is_empty()))
 }

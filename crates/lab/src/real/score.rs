@@ -211,6 +211,7 @@ pub fn row(
     let is_whole = outcomes.len() == frames && scores.len() == frames;
     is_whole.then_some(()).with_context(|| format!("{method} did not answer for every frame"))?;
     let found = || outcomes.iter().filter_map(|outcome| outcome.found.as_ref().ok());
+    let refused = frames - found().count();
     let all = |of: fn(&FrameScore) -> &[f64]| -> Vec<f64> {
         scores.iter().flat_map(|score| of(score).iter().copied()).collect()
     };
@@ -225,7 +226,7 @@ pub fn row(
         input: sequence.input.name(),
         method,
         frames,
-        refused: frames - found().count(),
+        refused,
         doubted: found().filter(|found| !found.doubts.is_empty()).count(),
         joints_mm: spread(&all(|score| &score.joints_mm)),
         states: (!states.is_empty()).then(|| States {
@@ -234,7 +235,8 @@ pub fn row(
         }),
         bone_angles_deg: mean(&all(|score| &score.angles_deg)),
         best_constant_deg: mean(&all(|score| &score.constant_angles_deg)),
-        iou: iou(scores),
+        // Of a method that draws nothing, nothing can be said.
+        iou: iou(scores).filter(|_| refused == frames || found().any(|own| !own.solids.is_empty())),
         reprojection: percentile(&reprojection, 50)
             .zip(percentile(&reprojection, 90))
             .map(|(median, p90)| Reprojection { median, p90 }),
