@@ -41,7 +41,7 @@ fn main() -> Result<()> {
     let along = |t: usize| REACH * (2.0 * t as f64 / (POINTS - 1) as f64 - 1.0);
     let grid = Mat::from_fn(1, POINTS, |_, t| along(t));
     let (mean, plain) = model.predict_with_std(grid.as_ref())?;
-    let (_, healed) =
+    let (_, augmented) =
         AugmentedRvm::new(model, x.as_ref(), y.as_ref())?.predict_with_std(grid.as_ref())?;
 
     let band = |std: &Mat<f64>| {
@@ -58,7 +58,7 @@ fn main() -> Result<()> {
          font-family=\"sans-serif\" font-size=\"13\">"
     );
     println!("<rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"white\"/>");
-    println!("<polygon points=\"{}\" fill=\"#fbd3a6\"/>", band(&healed));
+    println!("<polygon points=\"{}\" fill=\"#fbd3a6\"/>", band(&augmented));
     println!("<polygon points=\"{}\" fill=\"#9ec9e8\"/>", band(&plain));
     let truth = line(&|t| sinc(along(t)));
     println!(
@@ -80,7 +80,7 @@ fn main() -> Result<()> {
     let labels = [
         ("#134b73", "mean"),
         ("#9ec9e8", "two deviations, plain"),
-        ("#fbd3a6", "two deviations, healed"),
+        ("#fbd3a6", "two deviations, RVM*"),
         ("#c0392b", "vectors kept"),
         ("#777", "sin(x)/x"),
     ];

@@ -30,13 +30,16 @@ fn main() -> Result<()> {
     let width = Bandwidth::Relative(7.0);
     let kernel = Kernel::Gaussian(width);
     show(
-        "Tipping",
+        "RVM",
         &RelevanceVectorMachine { kernel, ..RelevanceVectorMachine::default() }.fit(x, y)?,
     )?;
     // One target alone wants a gentler prior than many that agree.
-    show("bridges", &AgarwalTriggs { kernel, nu: 0.03, ..AgarwalTriggs::default() }.fit(x, y)?)?;
     show(
-        "forward",
+        "Agarwal-Triggs",
+        &AgarwalTriggs { kernel, nu: 0.03, ..AgarwalTriggs::default() }.fit(x, y)?,
+    )?;
+    show(
+        "OLS",
         &OrthogonalLeastSquares { kernel, count: 6, ..OrthogonalLeastSquares::default() }
             .fit(x, y)?,
     )?;

@@ -1,4 +1,4 @@
-//! What can go wrong, by name.
+//! Errors.
 
 /// Result of this crate's fallible calls.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -50,10 +50,10 @@ pub enum Error {
         requirement: &'static str,
     },
     /// A count of columns that is zero or more than there are.
-    #[error("asked for {asked} columns of {available} that vary (at least 1)")]
+    #[error("requested {requested} columns, but {available} are non-constant (at least 1)")]
     Count {
-        /// Columns asked for.
-        asked: usize,
+        /// Columns requested.
+        requested: usize,
         /// Columns there are.
         available: usize,
     },
@@ -79,7 +79,7 @@ pub enum Error {
         /// How many there are to choose from.
         available: usize,
     },
-    /// A streamed value lies absurdly far from where the pilot's samples do.
+    /// A streamed value is implausibly far from the pilot's samples.
     #[error(
         "{what}[{row}, {column}] is {value}, more than 65536 of the pilot's standard deviations \
          from its mean; draw the pilot at random from all samples, or remove the outlier"
@@ -110,43 +110,43 @@ pub enum Error {
         value: f64,
     },
     /// Sums over so many samples could overflow.
-    #[error("{samples} samples in one sum; it takes at most {limit}")]
+    #[error("{samples} samples in one sum; the limit is {limit}")]
     TooManySamples {
         /// Samples that there would be.
         samples: usize,
         /// Most that are accepted.
         limit: usize,
     },
-    /// Sums were given columns, or other sums, that they do not belong to.
-    #[error("sums over columns {sums:016x} do not belong to columns {columns:016x}")]
+    /// Sums were combined with another basis, or with sums over another basis.
+    #[error("the sums belong to basis {sums:016x}, not to basis {columns:016x}")]
     OtherColumns {
         /// Fingerprint of the columns that were summed.
         sums: u64,
         /// Fingerprint of the columns given.
         columns: u64,
     },
-    /// Columns were made for another kernel than the fitter's.
-    #[error("the fitter's kernel is {fitter}, the columns' {columns}")]
+    /// The basis was made for another kernel than the fitter's.
+    #[error("the fitter's kernel is {fitter}, but the basis has {columns}")]
     OtherKernel {
         /// Kernel of the fitter.
         fitter: String,
         /// Kernel of the columns.
         columns: String,
     },
-    /// A name that C does not take.
+    /// A name that is not a C identifier.
     #[error("{name:?} is no C identifier")]
     Identifier {
         /// The name.
         name: String,
     },
-    /// Only a model with Gaussians and a posterior over their weights can be healed.
-    #[error("the model has no Gaussians with a posterior over their weights")]
+    /// Only a model with Gaussian columns and a posterior over weights can be augmented.
+    #[error("only a model with Gaussian columns and a posterior over weights can be augmented")]
     NotSparse,
-    /// Widths can be learnt of Gaussians only.
-    #[error("a linear kernel has no width to learn")]
+    /// Only Gaussian kernels have length scales.
+    #[error("a linear kernel has no length scales to optimise; use a Gaussian one")]
     NoWidth,
-    /// The columns of a cascade's second pass read a feature that its first did not select.
-    #[error("the columns read feature {feature}, which the first pass did not select")]
+    /// The basis of a second pass reads a feature that the first pass did not select.
+    #[error("the basis reads feature {feature}, which the first pass did not select")]
     NotSelected {
         /// The first such feature.
         feature: usize,

@@ -35,9 +35,8 @@ pub(crate) fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
 
 /// A·B into `out`, all zeros.
 ///
-/// For a product of more multiplications than a tile has, faer sets aside twice the processor's
-/// last cache in every thread, unless it is by a vector. A small one is therefore cut into tiles, for
-/// a third more time.
+/// Above the size of a tile, unless one factor is a vector, faer allocates twice the last-level
+/// cache in every thread. Small products are therefore cut into tiles, at a third more time.
 fn multiply(mut out: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
     let ((m, k), n) = (a.shape(), b.ncols());
     let by_a_vector = m.min(k).min(n) <= 1;

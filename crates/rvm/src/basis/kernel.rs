@@ -17,21 +17,20 @@ const MOST_COLUMNS: usize = 10_000;
 pub enum Kernel {
     /// f(x) = x: one basis column per input, so that sparsity selects features (p = K).
     Linear,
-    /// φᵢ(x) = exp(−|β| ‖x − xᵢ‖²): one per training sample, so that sparsity selects samples
-    /// (p = I).
+    /// φᵢ(x) = exp(−γ‖x − xᵢ‖²): one per training sample, so that sparsity selects samples (p = I).
     Gaussian(Bandwidth),
 }
 
-/// How quickly a Gaussian kernel falls, on standardised inputs.
+/// Bandwidth of a Gaussian kernel on standardised inputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Bandwidth {
-    /// From the scatter matrix of the training inputs: |β| = c / (2 tr cov), where tr cov is the
-    /// number of inputs that vary. c > 0; about 0.3 suits few centres among many inputs, 1 to 3
-    /// all centres; one or two inputs want 5 to 10.
+    /// Relative to the scatter of the training inputs: γ = c / (2 tr cov), where tr cov is the
+    /// number of inputs that vary. c > 0. Use about 0.3 for few centres and many inputs, 1 to 3 for
+    /// a centre on every sample, 5 to 10 for one or two inputs.
     Relative(f64),
-    /// β itself, or its magnitude: the paper prints e^{β‖·‖²} with β negative, most libraries
-    /// γ = −β, and either is taken. Not zero.
+    /// γ in exp(−γ‖x − xᵢ‖²), not zero. The sign is ignored, since the paper writes e^{β‖·‖²} with
+    /// a negative β.
     Gamma(f64),
 }
 

@@ -1,4 +1,4 @@
-//! The normal equations that every sparse and ridge solver works on, wherever they come from.
+//! The normal equations that ridge, sparse and relevance vector solvers work on.
 
 use faer::{Mat, MatRef};
 
@@ -10,7 +10,7 @@ use crate::model::parts::{ModelParts, Posterior};
 /// Normal equations of p centred basis columns Φ (n×p) and m centred, standardised targets Y
 /// (n×m). A solver sees no more of the data than this.
 pub(crate) trait Equations {
-    /// What the columns are columns of.
+    /// The basis of the columns.
     fn columns(&self) -> &BasisSpec;
 
     /// Number of samples n.

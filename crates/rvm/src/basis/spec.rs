@@ -1,4 +1,4 @@
-//! What the columns of a regression are, fixed before its data stream by.
+//! The basis of a regression on streamed samples, fixed before they arrive.
 
 use faer::{Mat, MatRef};
 
@@ -16,25 +16,25 @@ const ORIGIN_STEP: f64 = 1.0 / (1 << 20) as f64;
 /// Most standard deviations of the pilot that a sample may lie from its mean. Squares of such
 /// numbers over as many samples as may be summed stay within the sums' range.
 pub(crate) const FURTHEST: f64 = 65_536.0;
-/// Samples that are known before the others: what a stream's standardisation and its Gaussians'
-/// centres are taken from.
+/// A small subset of the samples, known beforehand, that gives the scaling and the centres of the
+/// Gaussians. Draw it with [`random_subset`](crate::random_subset).
 #[derive(Debug, Clone, Copy)]
 pub struct PilotSample<'a> {
     /// Inputs, K×n.
     pub x: MatRef<'a, f64>,
     /// Targets, m×n.
     pub y: MatRef<'a, f64>,
-    /// Index of each of the n samples in the whole training set, which is what
-    /// [`Model::kept_samples`](crate::Model::kept_samples) will name.
+    /// Index of each of the n samples in the whole training set, as returned by
+    /// [`Model::kept_samples`](crate::Model::kept_samples).
     pub samples: &'a [usize],
 }
 
-/// The columns of a regression on samples that stream by: the scaling of inputs and targets, and
-/// the p basis functions.
+/// The basis of a regression on streamed samples: the scaling of inputs and targets, and the p
+/// basis functions (columns).
 ///
-/// Everything here comes from the [`PilotSample`], so that whoever holds the pilot can add any part of
-/// the stream to [`SufficientStatistics`](crate::SufficientStatistics) without seeing the rest. Inputs that do not vary in the
-/// pilot are left out.
+/// It depends on the [`PilotSample`] alone, so that every machine with the pilot can add its part
+/// of the stream to [`SufficientStatistics`](crate::SufficientStatistics). Inputs that are constant
+/// over the pilot are ignored.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BasisSpec {
     inputs: StandardScaler,
@@ -55,8 +55,9 @@ impl BasisSpec {
         Self::over(pilot, kernel, &all)
     }
 
-    /// A Gaussian on each sample of the pilot, over inputs whose proportions mean something, such as
-    /// those of a learnt [`LearnedMetric`](crate::LearnedMetric): all are divided by one number.
+    /// A Gaussian on each sample of the pilot, with all inputs divided by one common scale. For
+    /// inputs whose relative scales matter, such as those of a
+    /// [`LearnedMetric`](crate::LearnedMetric).
     pub fn in_proportion(pilot: &PilotSample<'_>, bandwidth: Bandwidth) -> Result<Self> {
         let problem = Problem::in_proportion(pilot.x, pilot.y)?;
         Self::on_pilot(&problem, problem.features(), Kernel::Gaussian(bandwidth), pilot)
@@ -145,7 +146,7 @@ impl BasisSpec {
         &self.features
     }
 
-    /// The basis functions asked for.
+    /// The kernel that the basis was made with.
     pub fn kernel(&self) -> Kernel {
         self.kernel
     }
@@ -190,8 +191,8 @@ impl BasisSpec {
         (self.features.clone(), Basis::Gaussian { beta: *beta, samples, centres })
     }
 
-    /// Refuses samples that are not numbers, or lie absurdly far outside the pilot's range: one of
-    /// them would outweigh all others, and sums that hold them could overflow.
+    /// Refuses values that are not finite, or implausibly far from the pilot's samples: one of them
+    /// would outweigh all others, and sums could overflow.
     pub(crate) fn check_samples(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<()> {
         check::matrix("x", x)?;
         check::matrix("y", y)?;
@@ -202,8 +203,8 @@ impl BasisSpec {
         near("y", y, &self.targets, &(0..y.nrows()).collect::<Vec<_>>())
     }
 
-    /// A number that other columns are most unlikely to have: sums of one are not to be joined
-    /// with sums of another. (FNV-1a over the bits of all that defines them.)
+    /// A hash (FNV-1a) of everything that defines the basis, so that sums over different bases are
+    /// not merged.
     pub(crate) fn fingerprint(&self) -> u64 {
         let scalings = [&self.inputs, &self.targets];
         let scalings = scalings.into_iter().flat_map(|s| s.mean().iter().chain(s.scale()));

@@ -58,8 +58,12 @@ pub(crate) fn iterations(max_iterations: usize) -> Result<()> {
 }
 
 /// Refuses a count of columns that is zero or more than there are.
-pub(crate) fn count(asked: usize, available: usize) -> Result<()> {
-    if (1..=available).contains(&asked) { Ok(()) } else { Err(Error::Count { asked, available }) }
+pub(crate) fn count(requested: usize, available: usize) -> Result<()> {
+    if (1..=available).contains(&requested) {
+        Ok(())
+    } else {
+        Err(Error::Count { requested, available })
+    }
 }
 
 /// Refuses indices that are not ascending or not below `available`.

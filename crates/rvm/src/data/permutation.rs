@@ -5,9 +5,8 @@ use rand_pcg::Pcg64Mcg;
 
 /// At most `count` of the indices 0..`all`, every subset equally likely, in ascending order.
 ///
-/// Use it wherever some samples stand for all of them: a pilot, centres, a validation set. Every n-th
-/// sample of an ordered list is no substitute: where the list is periodic, such as the cycles of a
-/// motion, it can see a single phase.
+/// Use it to choose pilots, centres and validation sets. Do not take every n-th sample instead: if
+/// the samples are periodic, such as cycles of a motion, all of these can have the same phase.
 ///
 /// The subset depends on `seed` alone. With the same seed a smaller subset is part of a larger one.
 ///

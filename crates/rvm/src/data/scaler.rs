@@ -58,7 +58,7 @@ impl StandardScaler {
         Ok(each)
     }
 
-    /// Puts one together from the mean and the standard deviation (0: constant) of each row.
+    /// Assembles a scaler from the mean and the standard deviation (0: constant) of each row.
     pub fn from_parts(mean: Vec<f64>, scale: Vec<f64>) -> Result<Self> {
         check::length("scales", mean.len(), scale.len())?;
         if !mean.iter().all(|&v| check::usable(v)) {

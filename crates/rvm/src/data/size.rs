@@ -1,9 +1,9 @@
-//! How large a problem is, before its data exist.
+//! The size of a problem, before there are data.
 
 use faer::MatRef;
 
-/// Counts of a regression problem. Fitters say by `check(size)` whether they would take it, so that
-/// a caller need not gather samples first.
+/// The size of a regression problem. `check(size)` of a fitter tells whether it can be fitted,
+/// before samples are gathered.
 ///
 /// ```
 /// use phalanx_rvm::{Error, KernelRidge, NystromRidge, ProblemSize};

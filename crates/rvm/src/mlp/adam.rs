@@ -1,13 +1,13 @@
-//! Adam: steps by the mean of the slopes over the root of their mean square (Kingma and Ba 2015).
+//! Adam (Kingma and Ba 2015).
 
 use rayon::prelude::*;
 
-/// How much of the means each step leaves.
+/// Decay rates of the moving averages.
 const MEAN: f64 = 0.9;
 const SQUARE: f64 = 0.999;
-/// Least root of a mean square.
+/// Added to the denominator.
 const LEAST: f64 = 1e-8;
-/// Weights that one task moves.
+/// Weights updated by one task.
 const BLOCK: usize = 1 << 14;
 
 pub(super) struct Adam {
@@ -26,10 +26,10 @@ impl Adam {
         self.steps
     }
 
-    /// Moves weights down their slopes, given in parts that are added in order, at a rate.
+    /// One step at a learning rate. The gradient comes in parts, which are added in order.
     pub(super) fn step(&mut self, weights: &mut [f32], slopes: &[&[f32]], rate: f64) {
         self.steps += 1;
-        // Both means begin at zero, which is made up for.
+        // Corrects the bias of averages that start at zero.
         let sofar = |share: f64| 1.0 - share.powi(i32::try_from(self.steps).unwrap_or(i32::MAX));
         let (rate, root) = ((rate / sofar(MEAN)) as f32, sofar(SQUARE).sqrt().recip() as f32);
         let means = self.mean.par_chunks_mut(BLOCK).zip(self.square.par_chunks_mut(BLOCK));

@@ -1,4 +1,4 @@
-//! Samples through the layers and back, in single precision, on one thread.
+//! Forward and backward passes through the layers, in single precision, on one thread.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -7,26 +7,25 @@ use rand_pcg::Pcg64Mcg;
 
 /// The weights of all layers.
 pub(super) struct Layers {
-    /// How many numbers go into each layer, and out of the last.
+    /// Number of inputs of each layer, and of outputs of the last.
     widths: Vec<usize>,
     /// Layer after layer: the matrix, out×in, column after column, and the bias.
     weights: Vec<f32>,
 }
 
-/// What is left out of each layer: so large a share, by chance.
+/// Dropout: sets each value to zero with this probability.
 pub(super) struct DropoutMask {
     pub(super) share: f64,
     pub(super) random: Pcg64Mcg,
 }
 
-/// Some samples on their way: what they become, and then how the error changes with that.
+/// The activations of some samples; after the backward pass, the gradients of the error by them.
 #[derive(Default)]
 pub(super) struct Pass {
     samples: usize,
-    /// What goes into each layer, and out of the last.
+    /// Inputs of each layer, and outputs of the last.
     values: Vec<Vec<f32>>,
-    /// How what goes into each layer but the first changes with what went out of the one before;
-    /// 0 where it was left out.
+    /// Derivatives of the activation function at each hidden layer; 0 where dropped out.
     steepness: Vec<Vec<f32>>,
     slopes: Vec<f32>,
 }
@@ -74,10 +73,10 @@ impl Layers {
 }
 
 impl Pass {
-    /// Samples that one pass takes well; with other numbers of them sums are rounded otherwise.
+    /// Samples of one pass. Another number would round sums differently.
     pub(super) const SAMPLES: usize = 128;
 
-    /// Takes samples, one after the other, through all layers.
+    /// Runs samples, stored one after the other, through all layers.
     pub(super) fn forward(
         &mut self,
         layers: &Layers,
@@ -108,7 +107,7 @@ impl Pass {
         }
     }
 
-    /// What came out, a column for each sample; how the error changes with it is put in its place.
+    /// The outputs, one column for each sample, to be replaced by the gradient of the error.
     pub(super) fn output_columns(&mut self) -> impl Iterator<Item = &mut [f32]> {
         let samples = self.samples;
         let output = self.values.last_mut().expect("went forward");
@@ -116,12 +115,12 @@ impl Pass {
         output.chunks_exact_mut(targets.max(1))
     }
 
-    /// How the error changes with the weights, after [`backward`](Self::backward).
+    /// The gradient of the error by the weights, after [`backward`](Self::backward).
     pub(super) fn slopes(&self) -> &[f32] {
         &self.slopes
     }
 
-    /// Finds how the error changes with the weights, from how it changes with what came out.
+    /// Computes the gradient of the error by the weights from that by the outputs.
     pub(super) fn backward(&mut self, layers: &Layers) {
         self.slopes.resize(layers.weights.len(), 0.0);
         for layer in (0..layers.count()).rev() {
@@ -148,7 +147,7 @@ impl Pass {
 }
 
 impl DropoutMask {
-    /// Makes some values 0 and what is kept larger for it, and their derivatives with them.
+    /// Sets some values and their derivatives to 0 and scales the others up.
     fn leave_out(&mut self, values: &mut [f32], steepness: &mut [f32]) {
         let mut bytes = vec![0; values.len()];
         self.random.fill_bytes(&mut bytes);
@@ -172,11 +171,11 @@ fn bend(values: &mut [f32], steepness: &mut Vec<f32>) {
     }
 }
 
-/// eˣ, a unit or two of the last place off; x is held within −87 and 88, where the result is a normal
-/// number. Loops around the system's own cannot be vectorised.
+/// eˣ to within two units in the last place; x is clamped to −87 … 88, where the result is a normal
+/// number. Unlike the standard library's, it can be vectorised.
 fn exp(x: f32) -> f32 {
     use std::f32::consts::LOG2_E;
-    /// Added to a number it puts the nearest whole number into the lowest bits.
+    /// Adding it puts the nearest integer into the lowest bits.
     const SHIFT: f32 = 12_582_912.0;
     /// ln 2 in two parts, of which the first has so few bits that its multiples are exact.
     const LN_2: [f32; 2] = [355.0 / 512.0, -2.121_944_4e-4];

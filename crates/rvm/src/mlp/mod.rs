@@ -1,4 +1,4 @@
-//! A small perceptron, fitted in minutes without a graphics card.
+//! A multilayer perceptron, trained on CPU threads.
 
 mod adam;
 mod layers;
@@ -22,19 +22,21 @@ use crate::mlp::samples::{Samples, Scaling, check_inputs};
 use crate::model::report::{Fit, Report, Trace};
 use crate::transform::affine_map::AffineMap;
 
-/// A multilayer perceptron: layers of x ↦ s(Wx + b), s(z) = z/(1 + e⁻ᶻ) (Elfwing, Uchibe and Doya
-/// 2018), and a linear one after them.
+/// Trains a multilayer perceptron: layers x ↦ s(Wx + b) with s(z) = z/(1 + e⁻ᶻ) (SiLU; Elfwing,
+/// Uchibe and Doya 2018), followed by a linear one.
 ///
-/// Fitted to the mean absolute error of the standardised targets by Adam (Kingma and Ba 2015) in
-/// shuffled batches, at a rate that rises over the first third of the steps and falls to nothing
-/// over the others (Smith and Topin 2019), with dropout (Srivastava et al. 2014). Inputs keep their
-/// proportions: put them on one scale first, as [`BlockPca`](crate::BlockPca) does.
+/// The loss is the mean absolute error of the standardised targets, minimised by Adam (Kingma and
+/// Ba 2015) in shuffled batches with a one-cycle learning rate (Smith and Topin 2019) and dropout
+/// (Srivastava et al. 2014). All inputs are divided by one common scale, so bring them to similar
+/// scales first, as [`BlockPca`](crate::BlockPca) does.
 ///
-/// One sample in 16, drawn at random, is not learnt from; the standard deviations are the root mean square errors of
-/// these, one for each target (with fewer than 128 samples, the targets' own deviations), and the
-/// trace holds their mean absolute error, in standardised units, after each epoch.
+/// One sample in 16, drawn at random, is held out. The standard deviation of each target is its
+/// root mean square error on these (with fewer than 128 samples, the target's own deviation). The
+/// trace holds their mean absolute error after each epoch, in standardised units. If samples are
+/// near-copies of each other, such as neighbouring frames of a video, the held-out errors are too
+/// small.
 ///
-/// For targets that depend on many inputs at once, and samples that go into the tens of thousands.
+/// Use it for tens of thousands of samples whose targets depend on many inputs.
 ///
 /// ```
 /// use phalanx_rvm::{MlpTrainer, Regressor, faer::Mat};
@@ -54,18 +56,18 @@ use crate::transform::affine_map::AffineMap;
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MlpTrainer {
-    /// How wide each layer is but the last; none for linear regression.
+    /// Width of each hidden layer; empty for linear regression.
     pub hidden: Vec<usize>,
-    /// How often each sample is looked at.
+    /// Number of passes over the samples.
     pub epochs: usize,
-    /// Samples of a step, at most. Every 128 of them go their way on a thread of its own, with slopes
-    /// as large as the weights.
+    /// Batch size. Every 128 samples of a batch are one parallel task, with a gradient as large as
+    /// the weights.
     pub batch: usize,
-    /// The highest rate.
+    /// Maximum learning rate.
     pub rate: f64,
-    /// The share of each layer that is left out at each step, from 0 to below 1.
+    /// Dropout probability, in [0, 1).
     pub dropout: f64,
-    /// Of the first weights, the samples held out, the order of samples and what is left out.
+    /// Seed of the initial weights, the held-out samples, the order of samples and dropout.
     pub seed: u64,
 }
 
@@ -84,9 +86,8 @@ impl MlpTrainer {
         self.fit_single(single.as_ref(), y, &mut |_| ())
     }
 
-    /// Fits as [`fit`](Self::fit) does, from inputs in single precision, which is what the network
-    /// computes in: tens of thousands of samples need no copy. `observe` is told the number of epochs
-    /// done after each.
+    /// Like [`fit`](Self::fit), from inputs in single precision, without a copy. Calls `observe`
+    /// with the number of epochs done after each epoch.
     pub fn fit_single(
         &self,
         x: MatRef<'_, f32>,
@@ -118,7 +119,7 @@ impl MlpTrainer {
         Ok(Fit { model: network, report: Report::new(vec![trace], None) })
     }
 
-    /// Refuses settings out of range, before there are data. There is no limit on their number.
+    /// Checks the settings before there are data. The number of samples is not limited.
     pub fn check(&self) -> Result<()> {
         check::positive("rate", self.rate)?;
         for (name, count) in [("epochs", self.epochs), ("batch", self.batch)] {
@@ -137,7 +138,7 @@ impl MlpTrainer {
         Ok(())
     }
 
-    /// How many numbers go into each layer, and out of the last.
+    /// Number of inputs of each layer, and of outputs of the last.
     fn widths(&self, inputs: usize, samples: &Samples<'_>) -> Vec<usize> {
         let mut widths = vec![inputs];
         widths.extend(&self.hidden);
@@ -156,7 +157,7 @@ impl MlpTrainer {
         let batch = self.batch.min(order.len());
         let steps = self.epochs * (order.len() / batch);
         let mut adam = Adam::new(layers.weights().len());
-        // So many samples as one pass takes go their way apart, however many threads there are.
+        // The split into passes does not depend on the number of threads.
         let parts = batch.div_ceil(Pass::SAMPLES);
         let mut passes: Vec<Pass> = std::iter::repeat_with(Pass::default).take(parts).collect();
         for epoch in 1..=self.epochs {
@@ -187,7 +188,7 @@ impl MlpTrainer {
     }
 }
 
-/// The share of the highest rate at a step of so many.
+/// The learning rate at a step, relative to its maximum (one-cycle schedule).
 fn one_cycle(step: usize, steps: usize) -> f64 {
     const RISE: f64 = 0.3;
     const FIRST: f64 = 0.04;
@@ -202,8 +203,8 @@ fn one_cycle(step: usize, steps: usize) -> f64 {
     }
 }
 
-/// The layers with the scaling of inputs in the first, and nothing in the last for targets that do not
-/// vary.
+/// The layers, with the scaling of inputs folded into the first and zero rows in the last for
+/// constant targets.
 fn folded(layers: &Layers, scaling: &Scaling, targets: &StandardScaler) -> Result<Vec<AffineMap>> {
     let last = layers.count() - 1;
     let varying = targets.varying();

@@ -1,4 +1,4 @@
-//! A fitted perceptron.
+//! A fitted multilayer perceptron.
 
 use crate::data::check;
 use crate::data::scaler::StandardScaler;
@@ -8,8 +8,8 @@ use crate::model::regressor::Regressor;
 use crate::model::scratch::Scratch;
 use crate::transform::affine_map::AffineMap;
 
-/// A fitted [`MlpTrainer`](crate::MlpTrainer): affine maps with z/(1 + e⁻ᶻ) between them, and a
-/// standard deviation for each target, the same everywhere.
+/// A multilayer perceptron, fitted by [`MlpTrainer`](crate::MlpTrainer): affine maps with z/(1 +
+/// e⁻ᶻ) between them, and a standard deviation for each target that does not depend on the input.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "MlpParts", into = "MlpParts"))]
@@ -21,18 +21,18 @@ pub struct Mlp {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MlpParts {
-    /// At least one, the first first; the last one's outputs are standardised targets.
+    /// The affine maps in order, at least one. The last returns standardised targets.
     pub layers: Vec<AffineMap>,
     /// The mean of each target.
     pub mean: Vec<f64>,
-    /// How much of a target one standardised unit is; 0 of one that does not vary.
+    /// The standard deviation of each target; 0 for a constant one.
     pub scale: Vec<f64>,
     /// The standard deviation of each target's prediction; 0 where the samples do not tell it.
     pub std: Vec<f64>,
 }
 
 impl Mlp {
-    /// Puts one together from its parts.
+    /// Assembles a perceptron from its parts, which are validated.
     pub fn from_parts(parts: MlpParts) -> Result<Self> {
         for pair in parts.layers.windows(2) {
             check::length("inputs of a layer", pair[0].outputs(), pair[1].inputs())?;
@@ -50,7 +50,7 @@ impl Mlp {
         Ok(Self { parts })
     }
 
-    /// A look at the parts.
+    /// The parts, borrowed.
     pub fn parts(&self) -> &MlpParts {
         &self.parts
     }

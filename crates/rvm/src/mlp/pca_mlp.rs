@@ -1,4 +1,4 @@
-//! A network on principal components.
+//! A multilayer perceptron on principal components.
 
 use crate::data::check;
 use crate::error::{Error, Result};
@@ -7,7 +7,7 @@ use crate::model::regressor::Regressor;
 use crate::model::scratch::Scratch;
 use crate::transform::block_pca::BlockPca;
 
-/// A network and the principal components of the inputs, which it reads.
+/// A multilayer perceptron that reads principal components of the inputs.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Parts", into = "Parts"))]
@@ -24,18 +24,18 @@ struct Parts {
 }
 
 impl PcaMlp {
-    /// Puts components and a network that reads as many together.
+    /// Combines principal components with a perceptron that reads as many inputs.
     pub fn from_parts(components: BlockPca, network: Mlp) -> Result<Self> {
         check::length("inputs of the network", components.outputs(), network.inputs())?;
         Ok(Self { parts: Parts { components, network } })
     }
 
-    /// The components.
+    /// The principal components.
     pub fn components(&self) -> &BlockPca {
         &self.parts.components
     }
 
-    /// The network.
+    /// The perceptron.
     pub fn network(&self) -> &Mlp {
         &self.parts.network
     }

@@ -1,4 +1,4 @@
-//! What a perceptron is fitted to, and how far off it is.
+//! Training samples of a perceptron, and its errors on held-out ones.
 
 use faer::{ColRef, Mat, MatRef};
 use rayon::prelude::*;
@@ -8,23 +8,23 @@ use crate::data::scaler::StandardScaler;
 use crate::error::{Error, Result};
 use crate::mlp::layers::{Layers, Pass};
 
-/// Of so many samples one is held out: it tells how far predictions are off.
+/// One sample in this many is held out.
 const HELD_OUT: usize = 16;
-/// Fewer held-out samples tell too little of that: the relative error of a deviation is 1/√(2n).
+/// Fewer held-out samples give no useful deviation: its relative error is 1/√(2n).
 const LEAST_HELD_OUT: usize = 8;
 
 /// The samples.
 pub(super) struct Samples<'a> {
-    /// K×I, as they were given: there may be no room for them twice.
+    /// K×I, borrowed: a copy may not fit into memory.
     x: MatRef<'a, f32>,
     scaling: &'a Scaling,
-    /// Those targets that vary, m×I, scaled.
+    /// Scaled targets that vary, m×I.
     pub(super) y: Mat<f32>,
     pub(super) learnt_from: Vec<usize>,
     held_out: Vec<usize>,
 }
 
-/// Refuses no inputs, and such as are not finite.
+/// Refuses empty inputs, and values that are not finite.
 pub(super) fn check_inputs(x: MatRef<'_, f32>) -> Result<()> {
     let (rows, columns) = x.shape();
     if rows == 0 || columns == 0 {
@@ -39,10 +39,10 @@ pub(super) fn check_inputs(x: MatRef<'_, f32>) -> Result<()> {
     Ok(())
 }
 
-/// How inputs are brought to means of zero and a mean variance of 1.
+/// Scaling of the inputs to means of 0 and a mean variance of 1.
 pub(super) struct Scaling {
     pub(super) mean: Vec<f64>,
-    /// What they are multiplied by; 0 where nothing varies.
+    /// The common factor; 0 if no input varies.
     pub(super) factor: f64,
 }
 
@@ -91,12 +91,12 @@ impl<'a> Samples<'a> {
         samples.iter().flat_map(|&sample| self.x.col(sample).iter().zip(mean).map(scaled)).collect()
     }
 
-    /// What tells how far predictions are off: the samples held out or, of a handful, all.
+    /// Samples that errors are measured on: the held-out ones or, if there are none, all.
     fn judges(&self) -> &[usize] {
         if self.held_out.is_empty() { &self.learnt_from } else { &self.held_out }
     }
 
-    /// The differences from the targets of all judges, one after the other.
+    /// Prediction errors on these samples, one after the other.
     fn differences(&self, layers: &Layers) -> Vec<f32> {
         let differences = |pass: &mut Pass, some: &[usize]| {
             pass.forward(layers, self.inputs(some), None);

@@ -1,4 +1,4 @@
-//! Fitted models as source text that depends on nothing.
+//! Source code for fitted models.
 
 use crate::error::{Error, Result};
 use crate::model::Model;
@@ -7,9 +7,9 @@ use crate::model::regressor::Regressor;
 
 impl Model {
     /// The model's mean prediction as Rust source: a module with `INPUTS`, `OUTPUTS`, the `NOISE`
-    /// deviation of each target and `predict`, which needs `std` (for the exponential) but no crate and
-    /// no allocation. Its numbers are those of [`predict_mean_into`](Self::predict_mean_into), to
-    /// rounding.
+    /// deviation of each target and `predict`, which needs `std` (for the exponential) but no crate
+    /// and no allocation. Results equal those of [`predict_mean_into`](Self::predict_mean_into) to
+    /// rounding. No phalanx pipeline uses it; it is for those who use this crate alone.
     ///
     /// ```
     /// use phalanx_rvm::{Ridge, faer::Mat};
@@ -58,8 +58,7 @@ impl Model {
     }
 
     /// The model's mean prediction as a C99 header: `<name>_predict(x, y)` and the sizes
-    /// `<NAME>_INPUTS` and `<NAME>_OUTPUTS`, for a device with nothing but `math.h`. `name` is a C
-    /// identifier.
+    /// `<NAME>_INPUTS` and `<NAME>_OUTPUTS`. It needs only `math.h`. `name` must be a C identifier.
     ///
     /// ```
     /// use phalanx_rvm::{Ridge, faer::Mat};

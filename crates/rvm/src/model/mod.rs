@@ -1,4 +1,4 @@
-//! The fitted regressor: one type, whichever way it was fitted.
+//! The fitted model that most fitters return.
 
 pub(crate) mod cholesky_factor;
 mod codegen;
@@ -16,13 +16,13 @@ use crate::model::parts::{Basis, ModelParts};
 
 /// A fitted regressor from K inputs to m targets, with its uncertainty.
 ///
-/// Every fitter of this crate makes one: linear or Gaussian basis columns, weights, the scaling of
-/// inputs and targets, and the posterior. If every column was pruned it predicts the mean, with
-/// the targets' own spread as its standard deviation. Of a target that does not vary in the samples,
-/// or of a single sample, no deviation can be known: it is infinite, never 0.
+/// All fitters except [`MlpTrainer`](crate::MlpTrainer) return one: linear or Gaussian basis
+/// columns, weights, the scaling of inputs and targets, and the posterior. If all columns were
+/// pruned it predicts the mean, with the target's own standard deviation. For a target that is
+/// constant over the samples, or a fit to a single sample, the deviation is infinite, never 0.
 ///
 /// ```
-/// use phalanx_rvm::{Model, Scratch, RelevanceVectorMachine, faer::Mat};
+/// use phalanx_rvm::{Model, Regressor, RelevanceVectorMachine, Scratch, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(2, 60, |i, t| ((t * (3 + i)) as f64 * 0.618).fract());
@@ -48,7 +48,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// Puts a model together from its parts, checked against each other.
+    /// Assembles a model from its parts, which are validated.
     pub fn from_parts(parts: ModelParts) -> Result<Self> {
         parts.check()?;
         Ok(Self { parts })
@@ -59,7 +59,7 @@ impl Model {
         self.parts
     }
 
-    /// A look at the parts.
+    /// The model's parts, borrowed.
     pub fn parts(&self) -> &ModelParts {
         &self.parts
     }
@@ -83,22 +83,22 @@ impl Model {
         }
     }
 
-    /// The weights of the columns kept, m×p, in the targets' units: a column belongs to a selected
-    /// feature (linear) or to a kept sample (Gaussian).
+    /// The weights, m×p, in the targets' units. A column belongs to a selected feature (linear) or
+    /// to a kept sample (Gaussian).
     pub fn weights(&self) -> MatRef<'_, f64> {
         MatRef::from_column_major_slice(&self.parts.weights, self.parts.outputs, self.parts.size())
     }
 
-    /// The distance along each selected feature, in its units, at which a Gaussian has fallen to
-    /// e^(−½); `None` for a linear model.
+    /// The distance along each selected feature, in its units, at which a Gaussian is e^(−½);
+    /// `None` for a linear model.
     pub fn length_scales(&self) -> Option<Vec<f64>> {
         let Basis::Gaussian { beta, .. } = &self.parts.basis else { return None };
         let deviation = (2.0 * beta).sqrt().recip();
         Some(self.parts.feature_scales.iter().map(|scale| scale * deviation).collect())
     }
 
-    /// Standard deviation of each target's noise, in its units; infinite where the samples do not
-    /// tell it: of a target that does not vary, and of a single sample.
+    /// Standard deviation of each target's noise, in its units. Infinite where the samples do not
+    /// tell it: for a constant target, and for a single sample.
     pub fn noise(&self) -> Vec<f64> {
         self.parts.known_noise().collect()
     }

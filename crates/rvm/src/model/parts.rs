@@ -129,8 +129,8 @@ impl ModelParts {
     }
 }
 
-/// A deviation, or infinity in place of 0: samples that do not differ, or a single one, tell nothing
-/// of how far others may lie.
+/// A deviation, or infinity in place of 0: equal samples, or a single one, do not tell how far
+/// others may lie.
 pub(crate) fn known(deviation: f64) -> f64 {
     if deviation > 0.0 { deviation } else { f64::INFINITY }
 }

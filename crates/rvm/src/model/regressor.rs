@@ -1,4 +1,4 @@
-//! What all fitted regressors have in common.
+//! The trait of everything that predicts.
 
 use faer::{Mat, MatRef};
 

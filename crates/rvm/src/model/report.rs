@@ -1,8 +1,8 @@
-//! What a fit says about itself.
+//! The result of a fit, and its report.
 
 use crate::model::Model;
 
-/// What a fitter returns: a fitted model, and how the fitting went.
+/// The result of a fit: the model and a report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit<M = Model> {
     /// The model.
@@ -11,7 +11,8 @@ pub struct Fit<M = Model> {
     pub report: Report,
 }
 
-/// How a fit went. Not converging is no error: the model is as good as it got.
+/// How a fit went. A fit that did not converge is not an error; the model is the best that was
+/// found.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Report {
@@ -19,11 +20,13 @@ pub struct Report {
     pub iterations: usize,
     /// Did every trace converge?
     pub converged: bool,
-    /// One per independent optimisation: one per target for Tipping, one per stage of a cascade,
-    /// otherwise one.
+    /// One per independent optimisation: one per target of
+    /// [`RelevanceVectorMachine`](crate::RelevanceVectorMachine), one per stage of
+    /// [`TwoStageSelection`](crate::TwoStageSelection), otherwise one.
     pub traces: Vec<Trace>,
-    /// The penalty in use, where the fitter chooses or adapts one: λ of kernel ridge and Nyström
-    /// regression, ν/m of bridges (of the last stage).
+    /// The penalty that was chosen: λ of [`KernelRidge`](crate::KernelRidge) and
+    /// [`NystromRidge`](crate::NystromRidge), ν/m of [`AgarwalTriggs`](crate::AgarwalTriggs) and of
+    /// the last stage of [`TwoStageSelection`](crate::TwoStageSelection).
     pub penalty: Option<f64>,
 }
 
@@ -32,7 +35,7 @@ pub struct Report {
 pub struct Trace {
     /// Did it converge before its limit on iterations?
     pub converged: bool,
-    /// The objective after each step, in standardised units; what it is, each fitter says.
+    /// The objective after each step, in standardised units; each fitter documents which.
     pub objective: Vec<f64>,
 }
 
@@ -47,15 +50,15 @@ impl Report {
     }
 }
 
-/// Where a climb of the evidence stands after a step, for whoever watches.
+/// Progress of an evidence maximisation after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// The target that is fitted; 0 where all are fitted together.
+    /// The target being fitted; 0 if all are fitted together.
     pub target: usize,
     /// Steps taken so far, those of restarts among them.
     pub iteration: usize,
-    /// Log evidence of the present climb, in nats: restarts begin lower.
+    /// Log evidence of the current ascent, in nats. Restarts begin lower.
     pub evidence: f64,
     /// Columns that are active.
     pub vectors: usize,

@@ -1,6 +1,7 @@
 //! Working memory of predictions.
 
-/// Working memory of single predictions: made once with `default()`, grown at first use.
+/// Working memory of single predictions. Create one with `default()` and reuse it; it grows at
+/// first use.
 #[derive(Debug, Clone, Default)]
 pub struct Scratch {
     /// Standardised features.

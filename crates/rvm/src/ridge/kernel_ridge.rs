@@ -16,24 +16,24 @@ use crate::model::parts::Posterior;
 use crate::model::report::{Fit, Report, Trace};
 use crate::ridge::penalised::Penalised;
 
-/// How strongly kernel ridge regression is penalised.
+/// How λ of [`KernelRidge`] is chosen.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Regularisation {
-    /// This λ > 0.
+    /// A fixed λ > 0.
     Fixed(f64),
-    /// Of these λ > 0, the one with the least squared leave-one-out error over all targets,
-    /// standardised.
+    /// The λ of this grid (all > 0) with the smallest squared leave-one-out error over all
+    /// standardised targets.
     Loocv(Vec<f64>),
 }
 
 /// Dense kernel ridge regression with a Gaussian kernel on every sample and an unpenalised bias;
 /// the mean of a Gaussian process (Rasmussen and Williams 2006, sections 2.2 and 5.4.2).
 ///
-/// The standard deviation is the process's: it grows to the prior's far from the samples. Its
-/// noise is what gives the leave-one-out errors unit variance. The trace holds the mean squared
-/// leave-one-out error of each λ of the grid, in standardised units (infinite where a λ is too
-/// small to be solved for); the report's penalty is the λ taken.
+/// The standard deviation is that of the process and grows to the prior's far from the samples. The
+/// noise is scaled so that the leave-one-out errors have unit variance. The trace holds the mean
+/// squared leave-one-out error of each λ of the grid, in standardised units (infinite where the
+/// system is singular). The report's penalty is the chosen λ.
 ///
 /// Time and memory grow with the cube and the square of the number of samples.
 ///
@@ -53,9 +53,9 @@ pub enum Regularisation {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct KernelRidge {
-    /// Width of the kernel.
+    /// Bandwidth of the kernel.
     pub bandwidth: Bandwidth,
-    /// Penalty.
+    /// How λ is chosen.
     pub regularisation: Regularisation,
 }
 
@@ -97,8 +97,8 @@ impl KernelRidge {
         Ok(Fit { model, report: Report::new(vec![trace], Some(lambda)) })
     }
 
-    /// Refuses settings out of range, and problems too large for this fitter. What
-    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    /// Checks the settings and the size of a problem before there are data. [`fit`](Self::fit) can
+    /// still fail because of the values of the data.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
         self.grid()?;
         self.bandwidth.check()?;

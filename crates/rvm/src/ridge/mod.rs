@@ -23,8 +23,9 @@ use crate::stream::summed::Summed;
 /// Ridge regression: minimises ‖Y − AF‖² + λ‖A‖² on standardised data.
 ///
 /// This is equation 4 of de Campos and Murray (2006), with one correction: the augmented system
-/// printed there, F̃ = (F λI), penalises λ²‖A‖²; here the penalty is λ, as their equation's right
-/// side has it. Sums run over all samples, so λ weighs against their number.
+/// printed there, F̃ = (F λI), penalises λ²‖A‖²; here the penalty is λ‖A‖², as on the right side of
+/// their equation. Errors are summed over samples, not averaged, so the effect of λ decreases with
+/// their number.
 ///
 /// The trace holds the objective.
 ///
@@ -64,8 +65,8 @@ impl Ridge {
         self.solve(&Design::full(&problem, self.kernel)?)
     }
 
-    /// Refuses settings out of range, and problems too large for this fitter. What
-    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    /// Checks the settings and the size of a problem before there are data. [`fit`](Self::fit) can
+    /// still fail because of the values of the data.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
         check::positive("lambda", self.lambda)?;
         self.kernel.check()?;

@@ -1,4 +1,4 @@
-//! Kernel ridge regression on a few of the samples' Gaussians.
+//! Kernel ridge regression with Gaussians on a subset of the samples (Nyström).
 
 use faer::{Mat, MatRef};
 
@@ -31,27 +31,26 @@ const BATCH: usize = 4096;
 /// Seed of the choice of centres in `fit`.
 const SEED: u64 = 0;
 
-/// How strongly a Nyström regression is penalised.
+/// How λ of [`NystromRidge`] is chosen.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum NystromRegularisation {
-    /// This λ > 0.
+    /// A fixed λ > 0.
     Fixed(f64),
-    /// Of these λ > 0, the one with the least generalised cross-validation error (Golub, Heath
-    /// and Wahba 1979): the leave-one-out error with every sample's leverage taken for the mean,
-    /// which needs no more than the sums.
+    /// The λ of this grid (all > 0) with the smallest generalised cross-validation error (Golub,
+    /// Heath and Wahba 1979): the leave-one-out error with every leverage replaced by the mean,
+    /// which can be computed from sums.
     Gcv(Vec<f64>),
 }
 
-/// What a Nyström regression's standard deviation knows.
+/// What the standard deviation of a [`NystromRidge`] prediction contains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum PredictiveDeviation {
-    /// The noise, and how sure the weights are at the input: p² numbers, all of which a prediction
-    /// reads.
+    /// The noise and the posterior of the weights at the input. Stores p² numbers, all of which a
+    /// prediction reads.
     Posterior,
-    /// One number for each target, the deviation of generalised cross-validation: what a left-out
-    /// sample's error is on average.
+    /// One number for each target: the root mean squared generalised cross-validation error.
     Gcv,
 }
 
@@ -59,21 +58,21 @@ pub enum PredictiveDeviation {
 /// all of them: the "subset of regressors" (Rasmussen and Williams 2006, section 8.3.1; Nyström's
 /// approximation).
 ///
-/// It minimises ‖Y − WΦ‖² + λ tr(W K Wᵀ), with K the kernel between the centres, so λ means what
-/// it means to [`KernelRidge`](crate::KernelRidge), and with all samples as centres the two agree.
-/// It is solved for V = W L, where L Lᵀ = K + 10⁻⁶ I.
+/// It minimises ‖Y − WΦ‖² + λ tr(W K Wᵀ), with K the kernel between the centres. λ has the same
+/// meaning as in [`KernelRidge`](crate::KernelRidge), and with all samples as centres the two
+/// agree. It is solved for V = W L, where L Lᵀ = K + 10⁻⁶ I.
 ///
 /// The trace holds the mean squared generalised cross-validation error of each λ of the grid, in
-/// standardised units (infinite where a λ is too small to be solved for); the report's penalty is
-/// the λ taken.
+/// standardised units (infinite where the system is singular). The report's penalty is the chosen
+/// λ.
 ///
-/// Far from the centres the standard deviation shrinks towards the noise's, as for the other
-/// models with weights.
+/// Far from the centres the standard deviation shrinks to that of the noise, as in all models with
+/// a posterior over weights.
 ///
 /// Time grows with n·p² for the sums and p³ for each λ; memory with p².
 ///
 /// ```
-/// use phalanx_rvm::{NystromRidge, faer::Mat, random_subset};
+/// use phalanx_rvm::{NystromRidge, Regressor, faer::Mat, random_subset};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(1, 500, |_, t| t as f64 / 60.0);
@@ -88,13 +87,13 @@ pub enum PredictiveDeviation {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NystromRidge {
-    /// Width of the kernel.
+    /// Bandwidth of the kernel.
     pub bandwidth: Bandwidth,
-    /// What the standard deviation knows.
+    /// What the standard deviation contains.
     pub deviation: PredictiveDeviation,
-    /// Penalty. In a Gaussian process λ is the noise's variance over the signal's, whatever the
-    /// number of samples: the default grid goes from next to no noise (10⁻⁴) to hardly any signal
-    /// (10).
+    /// How λ is chosen. In a Gaussian process λ is the noise variance over the signal variance,
+    /// whatever the number of samples: the default grid goes from almost no noise (10⁻⁴) to almost
+    /// no signal (10).
     pub regularisation: NystromRegularisation,
 }
 
@@ -110,17 +109,18 @@ impl Default for NystromRidge {
 }
 
 impl NystromRidge {
-    /// Most centres that [`fit`](Self::fit) takes: the fit of as many takes a second or two.
+    /// Largest number of centres in [`fit`](Self::fit), which takes a second or two.
     pub const CENTRES: usize = 1000;
 
-    /// Fits X (K×I) to Y (m×I) with Gaussians on all samples or, of more than
-    /// [`CENTRES`](Self::CENTRES), on as many that are drawn at random by a fixed seed.
+    /// Fits X (K×I) to Y (m×I), with Gaussians on all samples if there are at most
+    /// [`CENTRES`](Self::CENTRES), otherwise on a random subset of that size, drawn with a fixed
+    /// seed.
     pub fn fit(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Fit> {
         self.fit_on(x, y, &random_subset(x.ncols(), Self::CENTRES, SEED))
     }
 
-    /// Fits X (K×I) to Y (m×I) with Gaussians on the samples of these indices, ascending. Choose them
-    /// by [`random_subset`]: every n-th of an ordered list can miss most of it.
+    /// Fits X (K×I) to Y (m×I) with Gaussians on the samples with these indices (ascending). Choose
+    /// them with [`random_subset`]: every n-th sample of a periodic list can have the same phase.
     pub fn fit_on(&self, x: MatRef<'_, f64>, y: MatRef<'_, f64>, centres: &[usize]) -> Result<Fit> {
         self.grid()?;
         let problem = Problem::new(x, y)?;
@@ -138,15 +138,15 @@ impl NystromRidge {
         self.fit_sums(&columns, &sums)
     }
 
-    /// Refuses settings out of range, and more samples than one sum takes. What
-    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    /// Checks the settings and the size of a problem before there are data. [`fit`](Self::fit) can
+    /// still fail because of the values of the data.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
         self.grid()?;
         self.bandwidth.check()?;
         stream::room(size.samples)
     }
 
-    /// Fits sums over Gaussian columns of the same width.
+    /// Fits sums over Gaussian columns of the same bandwidth.
     pub fn fit_sums(&self, columns: &BasisSpec, sums: &SufficientStatistics) -> Result<Fit> {
         let grid = self.grid()?;
         columns.check_kernel(Kernel::Gaussian(self.bandwidth))?;

@@ -1,4 +1,4 @@
-//! Sparse models that know when they are far from their samples.
+//! RVM*: a sparse model whose deviation grows away from the training samples.
 
 use faer::{Mat, MatRef};
 
@@ -13,30 +13,31 @@ use crate::model::scratch::Scratch;
 /// A sparse Gaussian model with the predictive variance of RVM* (Rasmussen and Quiñonero-Candela
 /// 2005, *Healing the relevance vector machine through augmentation*).
 ///
-/// Far from its vectors all columns of a sparse model are zero, and it is as sure as its noise. Here
-/// one more Gaussian stands on the very input that is predicted, with a weight of mean zero and
-/// the target's own variance; what the training samples leave of that weight's variance is added:
+/// Far from its vectors all columns of a sparse model are zero, and its deviation is only that of
+/// the noise. RVM* adds one more Gaussian, centred on the input being predicted. Its weight has
+/// mean zero and the target's variance a priori; its variance given the training samples is added:
 ///
 /// > e²/(α + s),  s = φ*ᵀC⁻¹φ*,  e = φ*(x*) − φ(x*)ᵀΣΦᵀφ*
 ///
-/// in units of the noise's variance. The deviation grows from the plain one to that of the target.
-/// The mean stays the plain one. For this all training inputs are kept, and a prediction costs as
-/// much as with Gaussians on all of them.
+/// in units of the noise variance. The deviation thus grows from the plain one to the target's own.
+/// The mean is the plain model's. All training inputs are stored, and a prediction costs as much as
+/// with Gaussians on all of them. No phalanx pipeline uses it; it is for those who use this crate
+/// alone.
 ///
 /// ```
-/// use phalanx_rvm::{AugmentedRvm, RelevanceVectorMachine, faer::Mat};
+/// use phalanx_rvm::{AugmentedRvm, Regressor, RelevanceVectorMachine, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(1, 60, |_, t| t as f64 / 10.0); // from 0 to 6
 /// let y = Mat::from_fn(1, 60, |_, t| x[(0, t)].sin() + 0.1 * (9.0 * t as f64).sin());
 /// let model = RelevanceVectorMachine::default().fit(x.as_ref(), y.as_ref())?.model;
-/// let healed = AugmentedRvm::new(model, x.as_ref(), y.as_ref())?;
+/// let augmented = AugmentedRvm::new(model, x.as_ref(), y.as_ref())?;
 ///
 /// let asked = Mat::from_fn(1, 2, |_, t| [3.0, 30.0][t]); // among the samples, and far from them
-/// let (_, plain) = healed.model().predict_with_std(asked.as_ref())?;
-/// let (_, std) = healed.predict_with_std(asked.as_ref())?;
+/// let (_, plain) = augmented.model().predict_with_std(asked.as_ref())?;
+/// let (_, std) = augmented.predict_with_std(asked.as_ref())?;
 /// assert!(std[(0, 0)] < 0.2 && std[(0, 1)] > 0.5);
-/// assert!(plain[(0, 1)] < 0.2, "what has to be healed");
+/// assert!(plain[(0, 1)] < 0.2, "the plain deviation is too small");
 /// # Ok(())
 /// # }
 /// ```
@@ -52,9 +53,9 @@ pub struct AugmentedRvm {
 }
 
 impl AugmentedRvm {
-    /// Heals a model of the samples that it was fitted to: X (K×I) and Y (m×I). The model must
-    /// have Gaussians and a posterior over weights, as all sparse ones have; kernel ridge's own
-    /// deviation grows already.
+    /// Augments a model with the samples that it was fitted to: X (K×I) and Y (m×I). The model must
+    /// have Gaussian columns and a posterior over weights, as all sparse models have. (The
+    /// deviation of kernel ridge already grows.)
     pub fn new(model: Model, x: MatRef<'_, f64>, y: MatRef<'_, f64>) -> Result<Self> {
         check::matrix("x", x)?;
         check::matrix("y", y)?;
@@ -84,7 +85,7 @@ impl AugmentedRvm {
         Ok(Self { model, z, phi, variance })
     }
 
-    /// The model, whose own deviation is the plain one.
+    /// The plain model.
     pub fn model(&self) -> &Model {
         &self.model
     }

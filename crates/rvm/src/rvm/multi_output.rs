@@ -1,4 +1,4 @@
-//! The multivariate relevance vector machine: all targets share their relevant columns.
+//! The relevance vector machine for several targets that share their columns.
 
 use faer::{Mat, MatRef};
 
@@ -19,15 +19,15 @@ use crate::stream::SufficientStatistics;
 use crate::stream::summed::Summed;
 
 /// The multivariate relevance vector machine (Thayananthan, Navaratnam, Stenger, Torr and Cipolla
-/// 2006) in the fast form of Ha and Zhang (2017, arXiv 1704.05041): the targets share each
-/// column's precision, so that all of them keep the same few columns, and the weights' prior is
-/// relative to each target's noise, so that they share the posterior covariance too.
+/// 2006) in the fast form of Ha and Zhang (2017, arXiv 1704.05041). The targets share each column's
+/// precision, so that all keep the same few columns. The prior of the weights is relative to each
+/// target's noise, so that they also share the posterior covariance.
 ///
-/// It is climbed as [`RelevanceVectorMachine`](crate::RelevanceVectorMachine) is: each step adds, re-estimates or deletes the one
-/// column that raises the evidence of all targets together the most, by rank-one updates that all
-/// targets share, or gives every target the noise at which the evidence is greatest. The trace holds
-/// the log evidence of all standardised targets that vary, as `RelevanceVectorMachine`'s do. An unpenalised bias
-/// stands beside the columns.
+/// The marginal likelihood is maximised as in
+/// [`RelevanceVectorMachine`](crate::RelevanceVectorMachine): each step adds, re-estimates or
+/// deletes one column by a rank-one update, or re-estimates the noise of all targets, whichever
+/// increases the evidence most. The trace holds the log evidence of all standardised targets that
+/// vary. The bias is not penalised.
 ///
 /// ```
 /// use phalanx_rvm::{MultiOutputRvm, faer::Mat};
@@ -47,21 +47,19 @@ use crate::stream::summed::Summed;
 pub struct MultiOutputRvm {
     /// Basis columns.
     pub kernel: Kernel,
-    /// Most columns to keep, at least 1: with so many none is added until one is deleted. `None`
-    /// leaves it to the evidence.
+    /// Maximum number of columns, at least 1. `None`: decided by the evidence alone.
     pub max_columns: Option<usize>,
-    /// Least noise variance, as a share of each target's variance, in (0, 1]: data without noise
-    /// would drive it to zero.
+    /// Lower bound of the noise variance, relative to each target's variance, in (0, 1]. Without
+    /// it, noise-free data would drive it to zero.
     pub noise_floor: f64,
-    /// Nats that each column kept must add to the evidence; at least 0. Columns that add next to
-    /// nothing cost time in every prediction.
+    /// What a column must add to the log evidence to be kept, in nats; at least 0. Columns that add
+    /// almost nothing only cost prediction time.
     pub min_evidence_gain: f64,
-    /// Steps that gain no more than this, in nats, are not taken; above 0.
+    /// Converged when no step gains more than this, in nats; above 0.
     pub tolerance: f64,
-    /// Climbs after the first, each from the best so far without some columns that neighbour each
-    /// other: more of them find more evidence.
+    /// Number of restarts, each from the best solution so far without some neighbouring columns.
     pub restarts: usize,
-    /// Most steps, at least 1.
+    /// Maximum number of steps, at least 1.
     pub max_iterations: usize,
 }
 
@@ -85,15 +83,15 @@ impl MultiOutputRvm {
         self.fit_observed(x, y, &|_| ())
     }
 
-    /// Refuses settings out of range, and problems too large for this fitter. What
-    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    /// Checks the settings and the size of a problem before there are data. [`fit`](Self::fit) can
+    /// still fail because of the values of the data.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
         self.ascent()?;
         self.kernel.check()?;
         self.kernel.columns(size).map(drop)
     }
 
-    /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step.
+    /// Like [`fit`](Self::fit), with a call of `observe` after each step.
     pub fn fit_observed(
         &self,
         x: MatRef<'_, f64>,
@@ -112,7 +110,7 @@ impl MultiOutputRvm {
         Ok(self.resume(&summed, &Vectors::default(), &|_| ())?.0)
     }
 
-    /// Climbs from vectors that are known to be good; returns those that it ends with too.
+    /// Ascends from given vectors; also returns the final ones.
     pub(crate) fn resume(
         &self,
         equations: &dyn Equations,

@@ -1,4 +1,4 @@
-//! Tipping's relevance vector machine, one target at a time.
+//! The relevance vector machine, for each target by itself.
 
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
@@ -18,16 +18,16 @@ use crate::rvm::marginal_likelihood::MarginalLikelihood;
 use crate::rvm::marginal_likelihood::ascent::Ascent;
 use crate::rvm::marginal_likelihood::targets::Targets;
 
-/// Tipping's relevance vector machine (2001) by fast marginal likelihood maximisation (Tipping and
-/// Faul 2003), for each target by itself.
+/// The relevance vector machine (Tipping 2001), fitted by fast marginal likelihood maximisation
+/// (Tipping and Faul 2003), for each target by itself.
 ///
-/// Each step adds, re-estimates or deletes one column by a rank-one update, or gives the noise the
-/// variance at which the evidence is greatest: whichever raises the evidence the most. It has
-/// converged when no step gains. What one step at a time converges to depends on its first steps,
-/// so that it is left again [`restarts`](Self::restarts) times, in search of a better one. An
-/// unpenalised bias stands beside the columns. The traces, one per target, hold the log evidence in
-/// nats of the standardised target, after each step of the first climb and after each restart that
-/// found more; it falls only where a column goes that is not worth its min_evidence_gain.
+/// Each step adds, re-estimates or deletes one column by a rank-one update, or re-estimates the
+/// noise, whichever increases the evidence most. It converges to a local optimum that depends on
+/// the first steps; [`restarts`](Self::restarts) searches for better ones. The bias is not
+/// penalised. The traces, one per target, hold the log evidence of the standardised target in nats,
+/// after each step of the first ascent and after each restart that found a better optimum. It
+/// decreases only where a column is dropped that gains less than
+/// [`min_evidence_gain`](Self::min_evidence_gain).
 ///
 /// ```
 /// use phalanx_rvm::{RelevanceVectorMachine, faer::Mat};
@@ -46,18 +46,17 @@ use crate::rvm::marginal_likelihood::targets::Targets;
 pub struct RelevanceVectorMachine {
     /// Basis columns.
     pub kernel: Kernel,
-    /// Least noise variance, as a share of the target's variance, in (0, 1]: data without noise
-    /// would drive it to zero.
+    /// Lower bound of the noise variance, relative to the target's variance, in (0, 1]. Without it,
+    /// noise-free data would drive it to zero.
     pub noise_floor: f64,
-    /// Nats that each column kept must add to the evidence; at least 0. Columns that add next to
-    /// nothing cost time in every prediction.
+    /// What a column must add to the log evidence to be kept, in nats; at least 0. Columns that add
+    /// almost nothing only cost prediction time.
     pub min_evidence_gain: f64,
-    /// Steps that gain no more than this, in nats, are not taken; above 0.
+    /// Converged when no step gains more than this, in nats; above 0.
     pub tolerance: f64,
-    /// Climbs after the first, each from the best so far without some columns that neighbour each
-    /// other: more of them find more evidence.
+    /// Number of restarts, each from the best solution so far without some neighbouring columns.
     pub restarts: usize,
-    /// Most steps per target, at least 1.
+    /// Maximum number of steps per target, at least 1.
     pub max_iterations: usize,
 }
 
@@ -80,16 +79,16 @@ impl RelevanceVectorMachine {
         self.fit_observed(x, y, &|_| ())
     }
 
-    /// Refuses settings out of range, and problems too large for this fitter. What
-    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    /// Checks the settings and the size of a problem before there are data. [`fit`](Self::fit) can
+    /// still fail because of the values of the data.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
         self.ascent()?;
         self.kernel.check()?;
         self.kernel.columns(size).map(drop)
     }
 
-    /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step. Targets are fitted in
-    /// parallel, so it may be called by several threads at once.
+    /// Like [`fit`](Self::fit), with a call of `observe` after each step. Targets are fitted in
+    /// parallel, so several threads may call it at once.
     ///
     /// ```
     /// use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,4 +1,4 @@
-//! Agarwal and Triggs' regression by column-wise quadratic bridges.
+//! Agarwal and Triggs' group-sparse regression.
 
 use faer::{Mat, MatRef};
 
@@ -28,23 +28,23 @@ pub enum Stop {
     /// The paper's T_a: a column whose norm is at most this is set to zero. At least 0; its scale
     /// depends on the kernel.
     Threshold(f64),
-    /// Keep this many columns, at least 1: the weakest go, at most 15 % a step, until so many are
-    /// left. If ν is too large for all of them to survive, the descent is run again from all
-    /// columns at half of it, until they do.
+    /// Keep this many columns, at least 1. The weakest columns are dropped, at most 15 % per step,
+    /// until this many are left. If ν is too large for all of them to survive, the iteration
+    /// restarts from all columns with half of it.
     Count(usize),
 }
 
-/// Agarwal and Triggs' sparse regression (2004, 2006; de Campos and Murray 2006, section 4):
-/// whole columns of A go to zero, so that all targets share the columns kept.
+/// Agarwal and Triggs' group-sparse regression (2004, 2006; de Campos and Murray 2006, section 4):
+/// whole columns of A become zero, so that all targets share the remaining columns.
 ///
 /// Starting from ridge regression, the penalty ν log‖a‖² of each column a is replaced by the
-/// quadratic "bridge" that touches it at the last solution, ν‖a‖²/‖a_last‖² and a constant, and
-/// the least squares problem solved again, until A stays as it is. Each step lowers the objective
-/// ‖AF − Y‖² + ν Σ log‖a‖² over the columns kept, which is what the trace holds; it jumps where
-/// columns are dropped. The weights are the iteration's own fixed point: no refit follows.
+/// quadratic "bridge" that touches it at the last solution, ν‖a‖²/‖a_last‖² plus a constant, and
+/// the least squares problem is solved again, until A converges. Each step lowers the objective ‖AF
+/// − Y‖² + ν Σ log‖a‖² over the remaining columns. The trace holds it; it jumps where columns are
+/// dropped. The weights are the fixed point of the iteration, without a refit.
 ///
-/// Here ν is m (the number of targets) times [`nu`](Self::nu): the squared error grows with m, so
-/// the balance between the two, and with it what a good value is, stays the same.
+/// Here ν is m (the number of targets) times [`nu`](Self::nu). The squared error grows with m, so a
+/// good value of `nu` does not depend on m.
 ///
 /// Two corrections to the printed text of 2006: R with ν/a_scale appended to F would penalise
 /// ν²/a², where the text (and this crate) has ν‖a‖²/a_scale²; and that bridge has the gradient of
@@ -67,8 +67,8 @@ pub enum Stop {
 pub struct AgarwalTriggs {
     /// Basis columns.
     pub kernel: Kernel,
-    /// ν/m > 0, the strength of the prior for each target. It bounds how many columns survive;
-    /// the fewer are to be kept, the larger it should be.
+    /// ν/m > 0, the strength of the prior for each target. The larger it is, the fewer columns
+    /// survive.
     pub nu: f64,
     /// When columns are dropped.
     pub stop: Stop,
@@ -100,8 +100,8 @@ impl AgarwalTriggs {
         self.solve(&Design::full(&problem, self.kernel)?)
     }
 
-    /// Refuses settings out of range, and problems too large for this fitter. What
-    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    /// Checks the settings and the size of a problem before there are data. [`fit`](Self::fit) can
+    /// still fail because of the values of the data.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
         self.kernel.check()?;
         self.check_settings(self.kernel.columns(size)?)

@@ -19,15 +19,15 @@ use crate::stream::summed::Summed;
 /// A column with less than this share of its energy outside the columns chosen depends on them.
 const DEPENDENT: f64 = 1e-10;
 
-/// Orthogonal least squares (Chen, Cowan and Grant 1991), over all targets at once: each step adds
-/// the column that lowers the penalised squared error of all targets together the most. Then
-/// sequential replacement (Miller 2002): each column in turn is taken out and the best one put in
-/// its place, until none changes.
+/// Orthogonal least squares (Chen, Cowan and Grant 1991) over all targets at once: each step adds
+/// the column that most reduces the penalised squared error, summed over targets. It is followed by
+/// sequential replacement (Miller 2002): each column in turn is replaced by the best one, until
+/// nothing changes.
 ///
-/// The error is ‖Y − AF‖² + λ‖A‖²; a small λ only keeps nearly dependent columns apart. The trace
-/// holds the error after each column and after each sweep of replacements. Fewer than `count`
-/// columns are chosen, and the fit said not to have converged, if the others depend on those
-/// chosen or the targets are already met.
+/// The error is ‖Y − AF‖² + λ‖A‖²; a small λ only regularises nearly dependent columns. The trace
+/// holds the error after each column and after each sweep of replacements. If all other columns
+/// depend on the chosen ones, or the targets are already fitted exactly, fewer than `count` columns
+/// are chosen and the report says that the fit did not converge.
 ///
 /// ```
 /// use phalanx_rvm::{OrthogonalLeastSquares, Kernel, faer::Mat};
@@ -50,7 +50,7 @@ pub struct OrthogonalLeastSquares {
     pub count: usize,
     /// λ > 0.
     pub lambda: f64,
-    /// Most sweeps of replacements; 0 for forward selection alone.
+    /// Maximum number of replacement sweeps; 0 for plain forward selection.
     pub sweeps: usize,
 }
 
@@ -68,8 +68,8 @@ impl OrthogonalLeastSquares {
         self.solve(&Design::full(&problem, self.kernel)?)
     }
 
-    /// Refuses settings out of range, and problems too large for this fitter. What
-    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    /// Checks the settings and the size of a problem before there are data. [`fit`](Self::fit) can
+    /// still fail because of the values of the data.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
         self.kernel.check()?;
         self.check_settings(self.kernel.columns(size)?)
@@ -146,8 +146,7 @@ impl OrthogonalLeastSquares {
     }
 }
 
-/// Columns of G = FFᵀ without λ, each computed when it is first asked for: only those of columns
-/// that are chosen at some time ever are.
+/// Columns of G = FFᵀ without λ, computed on first use: only those of chosen columns are needed.
 struct Products<'a> {
     equations: &'a dyn Equations,
     known: Vec<Option<Vec<f64>>>,

@@ -1,4 +1,4 @@
-//! Features selected linearly, then samples by Gaussian kernels.
+//! Selection of features by a linear model, then of samples by a Gaussian one.
 
 use faer::MatRef;
 
@@ -14,10 +14,11 @@ use crate::sparse::agarwal_triggs::{AgarwalTriggs, Stop};
 use crate::stream::SufficientStatistics;
 use crate::stream::summed::Summed;
 
-/// The paper's "both" (de Campos and Murray 2006, section 4): bridges over linear columns select
-/// features, then bridges over Gaussian columns on those features select samples.
+/// The "both" regressor of de Campos and Murray (2006, section 4): [`AgarwalTriggs`] over linear
+/// columns selects features, then [`AgarwalTriggs`] over Gaussian columns on these features selects
+/// samples.
 ///
-/// The traces are the two stages'. If no feature survives, the model is the mean.
+/// There is one trace for each stage. If no feature survives, the model is the mean.
 ///
 /// ```
 /// use phalanx_rvm::{TwoStageSelection, faer::Mat};
@@ -37,7 +38,7 @@ pub struct TwoStageSelection {
     pub features: Stop,
     /// When samples are dropped.
     pub samples: Stop,
-    /// Width of the Gaussian kernels, on the features selected.
+    /// Bandwidth of the Gaussian kernels on the selected features.
     pub bandwidth: Bandwidth,
     /// ν/m > 0 of both stages, as in [`AgarwalTriggs::nu`].
     pub nu: f64,
@@ -65,22 +66,22 @@ impl TwoStageSelection {
         self.second(first, &Design::new(&problem, features, Kernel::Gaussian(self.bandwidth))?)
     }
 
-    /// Refuses settings out of range, and problems too large for this fitter. What
-    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    /// Checks the settings and the size of a problem before there are data. [`fit`](Self::fit) can
+    /// still fail because of the values of the data.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
-        self.bridges(Kernel::Linear, self.features).check(size)?;
-        self.bridges(Kernel::Gaussian(self.bandwidth), self.samples).check(size)
+        self.stage(Kernel::Linear, self.features).check(size)?;
+        self.stage(Kernel::Gaussian(self.bandwidth), self.samples).check(size)
     }
 
-    /// The first of two passes over a stream: the fit over linear columns, whose
-    /// [`selected_features`](crate::Model::selected_features) the second pass reads. If there are
-    /// none, it is the cascade's fit already.
+    /// First of two passes over a stream: the fit over linear columns. The second pass reads its
+    /// [`selected_features`](crate::Model::selected_features). If there are none, this is the
+    /// result.
     pub fn fit_features(&self, linear: &BasisSpec, sums: &SufficientStatistics) -> Result<Fit> {
         linear.check_kernel(Kernel::Linear)?;
         self.first(&Summed::new(linear, sums)?)
     }
 
-    /// The second pass: the fit over Gaussian columns on the features that the `first` selected
+    /// Second pass: the fit over Gaussian columns on the features that the `first` pass selected
     /// ([`BasisSpec::over`]).
     pub fn fit_samples(
         &self,
@@ -97,20 +98,20 @@ impl TwoStageSelection {
     }
 
     fn first(&self, linear: &dyn Equations) -> Result<Fit> {
-        self.bridges(Kernel::Linear, self.features).solve(linear)
+        self.stage(Kernel::Linear, self.features).solve(linear)
     }
 
     fn second(&self, first: Fit, gaussian: &dyn Equations) -> Result<Fit> {
         if first.model.selected_features().is_empty() {
             return Ok(first);
         }
-        let bridges = self.bridges(Kernel::Gaussian(self.bandwidth), self.samples);
-        let Fit { model, report } = bridges.solve(gaussian)?;
+        let stage = self.stage(Kernel::Gaussian(self.bandwidth), self.samples);
+        let Fit { model, report } = stage.solve(gaussian)?;
         let traces = [first.report.traces, report.traces].concat();
         Ok(Fit { model, report: Report::new(traces, report.penalty) })
     }
 
-    fn bridges(&self, kernel: Kernel, stop: Stop) -> AgarwalTriggs {
+    fn stage(&self, kernel: Kernel, stop: Stop) -> AgarwalTriggs {
         AgarwalTriggs { kernel, stop, nu: self.nu, ..AgarwalTriggs::default() }
     }
 }

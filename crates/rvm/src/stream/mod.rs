@@ -1,4 +1,4 @@
-//! Sums over samples that stream by, from which regressions are solved.
+//! Sums over streamed samples, from which regressions are fitted.
 
 pub(crate) mod parts;
 pub(crate) mod summed;
@@ -15,18 +15,18 @@ use crate::stream::parts::{MOST_SAMPLES, SufficientStatisticsParts, UNITS};
 const BLOCK: usize = 512;
 /// Columns of the products that one task computes.
 const WIDTH: usize = 96;
-/// All that a regression on [`BasisSpec`] needs of its samples: the sums of the products of each
-/// two among the p basis columns, the m standardised targets and the constant 1.
+/// All that a regression on a [`BasisSpec`] needs to know of its samples: sums of products between
+/// the p basis columns, the m standardised targets and the constant 1.
 ///
-/// That is G = Σ φφᵀ, B = Σ φyᵀ, Σ yyᵀ, Σ φ, Σ y and the number of samples: p + m + 1 numbers
-/// squared over two, however many the samples.
+/// These are G = Σ φφᵀ, B = Σ φyᵀ, Σ yyᵀ, Σ φ, Σ y and the number of samples: (p + m + 1)²/2
+/// numbers, whatever the number of samples.
 ///
-/// **The order does not matter.** Samples are taken in blocks of 512, cut from the start of each
-/// call of [`add`](Self::add). A block's products are rounded to multiples of 2⁻⁶⁴ (most are
-/// already: a double above 2⁻¹¹ in magnitude is one) and added as integers, which is associative.
-/// So whoever adds the same calls, in any order, in any number of sums [merged](Self::merge) in
-/// any order, at any number of threads, has the same bits. What may differ between two kinds of
-/// machine is the last bit of a block's products.
+/// **Order does not matter.** Each call of [`add`](Self::add) is cut into blocks of 512 samples.
+/// The products of a block are rounded to multiples of 2⁻⁶⁴ (most already are: every double above
+/// 2⁻¹¹ in magnitude is one) and added as integers, which is associative. The same calls therefore
+/// give the same bits in any order, in any number of [merged](Self::merge) parts and with any
+/// number of threads. Only between different kinds of CPU can the last bit of a block's products
+/// differ.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -38,7 +38,7 @@ pub struct SufficientStatistics {
 }
 
 impl SufficientStatistics {
-    /// Sums over no samples yet: 16 bytes for each of (p + m + 1)(p + m + 2)/2 numbers.
+    /// Sums over no samples. Takes 16 bytes for each of (p + m + 1)(p + m + 2)/2 numbers.
     pub fn new(columns: &BasisSpec) -> Self {
         let (size, outputs) = (columns.size(), columns.outputs());
         let all = size + outputs + 1;
@@ -53,10 +53,10 @@ impl SufficientStatistics {
         }
     }
 
-    /// Adds samples: inputs K×n and targets m×n. On an error the sums are as they were.
+    /// Adds samples: inputs K×n and targets m×n. On an error the sums are unchanged.
     ///
-    /// Blocks are cut from the first sample of `x` on: to have the same bits in another run, add
-    /// the same samples in each call. Working memory is 512 × (p + m + 1) numbers.
+    /// To get the same bits in another run, add the same samples in each call. Working memory is
+    /// 512 × (p + m + 1) numbers.
     pub fn add(
         &mut self,
         columns: &BasisSpec,
@@ -74,7 +74,7 @@ impl SufficientStatistics {
         Ok(())
     }
 
-    /// Adds the sums over other samples. On an error the sums are as they were.
+    /// Adds the sums over other samples. On an error the sums are unchanged.
     pub fn merge(&mut self, other: &Self) -> Result<()> {
         let SufficientStatisticsParts { columns, size, outputs, .. } = other.parts;
         self.check_same(columns, size, outputs)?;
@@ -96,7 +96,7 @@ impl SufficientStatistics {
         self.parts
     }
 
-    /// A look at the parts.
+    /// The sums' parts, borrowed.
     pub fn parts(&self) -> &SufficientStatisticsParts {
         &self.parts
     }

@@ -1,4 +1,4 @@
-//! An affine map to fewer numbers, made once and applied to every input.
+//! An affine map in single precision.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, ColMut, ColRef, Mat, MatRef, Par};
@@ -8,8 +8,8 @@ use crate::error::{Error, Result};
 
 /// z = P x + offset, from K inputs to d numbers.
 ///
-/// P is kept in single precision: it is the largest part of a regressor that has one, a prediction
-/// reads all of it, and descriptors are not known to seven digits.
+/// P is stored in single precision: it is the largest part of a regressor, a prediction reads all
+/// of it, and descriptors are not accurate to seven digits.
 ///
 /// ```
 /// use phalanx_rvm::{AffineMap, AffineMapParts, faer::mat};
@@ -41,7 +41,7 @@ pub struct AffineMapParts {
 }
 
 impl AffineMap {
-    /// Puts one together from its parts.
+    /// Assembles a map from its parts, which are validated.
     pub fn from_parts(parts: AffineMapParts) -> Result<Self> {
         let expected = parts.inputs.checked_mul(parts.offset.len());
         check::part("matrix", "has the wrong length", Some(parts.matrix.len()) != expected)?;
@@ -73,7 +73,7 @@ impl AffineMap {
         })
     }
 
-    /// A look at the parts.
+    /// The parts, borrowed.
     pub fn parts(&self) -> &AffineMapParts {
         &self.parts
     }
@@ -83,7 +83,7 @@ impl AffineMap {
         self.parts.inputs
     }
 
-    /// Length d of what it is taken to.
+    /// Length d of an output.
     pub fn outputs(&self) -> usize {
         self.parts.offset.len()
     }

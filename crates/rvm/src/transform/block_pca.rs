@@ -1,4 +1,4 @@
-//! Principal components of blocks of inputs, as a map that is made once.
+//! Principal components of blocks of inputs.
 
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
@@ -8,11 +8,11 @@ use crate::error::Result;
 use crate::transform::affine_map::AffineMap;
 use crate::transform::pca::{FeatureBlock, Pca, of_blocks};
 
-/// The principal components of blocks of inputs, one block's after the other's; each block is
-/// brought to a total variance of 1, whatever its inputs' number and units.
+/// Principal components of blocks of inputs, concatenated. Each block is scaled to a total variance
+/// of 1, whatever the number and units of its inputs.
 ///
 /// ```
-/// use phalanx_rvm::{FeatureBlock, BlockPca, faer::Mat};
+/// use phalanx_rvm::{BlockPca, FeatureBlock, faer::Mat};
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(5, 100, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
@@ -39,7 +39,7 @@ impl BlockPca {
         Ok(Self { blocks })
     }
 
-    /// Puts the blocks' maps together, in the order of their inputs.
+    /// Assembles the maps of the blocks, in the order of their inputs.
     pub fn from_parts(blocks: Vec<AffineMap>) -> Self {
         Self { blocks }
     }
@@ -51,11 +51,11 @@ impl BlockPca {
 
     /// Length K of an input.
     pub fn inputs(&self) -> usize {
-        // A map to no numbers at all may say that it reads any number of them.
+        // A map without outputs may claim any number of inputs.
         self.blocks.iter().map(AffineMap::inputs).fold(0, usize::saturating_add)
     }
 
-    /// How many components there are of all blocks.
+    /// Number of components of all blocks.
     pub fn outputs(&self) -> usize {
         self.blocks.iter().map(AffineMap::outputs).sum()
     }

@@ -1,4 +1,4 @@
-//! Distances that count what matters to a target.
+//! Distances learned from gradients.
 
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
@@ -23,24 +23,26 @@ use crate::transform::pca::{FeatureBlock, of_blocks};
 const CENTRE_SEED: u64 = 0;
 const GRADIENT_SEED: u64 = 1;
 
-/// Learns distances between inputs from the gradients of a first regression: the expected gradient
-/// outer product (Trivedi, Wang, Kpotufe and Shakhnarovich 2014; Wu, Guinney, Maggioni and Mukherjee
-/// 2010), one step of a recursive feature machine (Radhakrishnan, Beaglehole, Pandit and Belkin
-/// 2024).
+/// Learns distances between inputs from the gradients of a regression: the expected gradient outer
+/// product (Trivedi, Wang, Kpotufe and Shakhnarovich 2014; Wu, Guinney, Maggioni and Mukherjee
+/// 2010), which is one step of a recursive feature machine (Radhakrishnan, Beaglehole, Pandit and
+/// Belkin 2024).
 ///
-/// A Gaussian on all inputs alike takes two inputs for different that differ only in what a target
-/// does not depend on, and needs samples for every combination of it. So first each block of inputs
-/// is reduced to its principal components, equally strong as a block; on these kernel regression is
-/// fitted with all components alike; and for each group of targets
+/// A Gaussian kernel over all inputs also responds to directions that do not matter to a target,
+/// and so needs samples for all their combinations. Here each block of inputs is first reduced to
+/// its principal components and scaled to the same total variance. A kernel regression is fitted to
+/// these. For each group of targets,
 ///
 /// > M = mean of JᵀJ,  J = ∂(targets of the group)/∂(components) at a sample,
 ///
-/// gives the distance (a − b)ᵀM(a − b). In further rounds the group's own regression, in that
-/// distance, gives the next. Of M the strongest eigenvectors are kept: a group reads few numbers,
-/// which is what makes predictions fast.
+/// gives the distance (a − b)ᵀM(a − b). In further rounds a regression in that distance gives the
+/// next one. Only the strongest eigenvectors of M are kept, so that each group reads few numbers
+/// and predictions are fast.
 ///
 /// ```
-/// use phalanx_rvm::{FeatureBlock, ExpectedGradientOuterProduct, NystromRidge, GroupedRegressor, faer::Mat};
+/// use phalanx_rvm::{
+///     ExpectedGradientOuterProduct, FeatureBlock, GroupedRegressor, NystromRidge, Regressor, faer::Mat,
+/// };
 ///
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(6, 400, |i, t| ((t * (3 + i * i)) as f64 * 0.618).fract());
@@ -63,21 +65,21 @@ const GRADIENT_SEED: u64 = 1;
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExpectedGradientOuterProduct {
-    /// The regressions whose gradients are taken.
+    /// The regression whose gradients are taken.
     pub regression: NystromRidge,
-    /// How often a distance is learnt, at least 1.
+    /// Number of rounds, at least 1.
     pub rounds: usize,
-    /// Gaussians of the regressions, at most; at least 1.
+    /// Maximum number of Gaussians, at least 1; a random subset of the samples.
     pub centres: usize,
-    /// Samples whose gradients are averaged, at most; at least 1.
+    /// Maximum number of samples whose gradients are averaged, at least 1; a random subset.
     pub gradients: usize,
-    /// Numbers that a group of targets reads, at most; at least 1. In all rounds but the last it may
-    /// read [`WIDER`](Self::WIDER) times as many.
+    /// Maximum number of directions that a group of targets reads, at least 1. Before the last
+    /// round it may read [`WIDER`](Self::WIDER) times as many.
     pub rank: usize,
 }
 
 impl ExpectedGradientOuterProduct {
-    /// How many times its rank a group may read before the last round.
+    /// Factor by which the rank may be larger before the last round.
     pub const WIDER: usize = 3;
 
     /// Fits X (K×I), whose rows are made up of `blocks`, to Y (m×I), whose rows are in `groups` of
@@ -93,7 +95,7 @@ impl ExpectedGradientOuterProduct {
         check::matrix("y", y)?;
         check::length("columns (samples) of y", x.ncols(), y.ncols())?;
         if let Some(&output) = groups.iter().flatten().find(|&&output| output >= y.nrows()) {
-            return Err(Error::Count { asked: output + 1, available: y.nrows() });
+            return Err(Error::Index { what: "groups", index: output, available: y.nrows() });
         }
         let (mean, principal) = components(x, blocks)?;
         let z = centred_product(principal.as_ref(), x, &mean);
@@ -113,7 +115,8 @@ impl ExpectedGradientOuterProduct {
         Ok(LearnedMetric { projection: AffineMap::about(&mean, matrix.as_ref())?, groups })
     }
 
-    /// Refuses settings out of range, and more Gaussians than a dense solver takes.
+    /// Checks the settings and the size of a problem before there are data. [`fit`](Self::fit) can
+    /// still fail because of the values of the data.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
         for count in [self.rounds, self.rank, self.gradients, self.centres] {
             check::count(count.min(1), 1)?;

@@ -1,4 +1,4 @@
-//! A regressor for each group of targets, on a projection of the inputs that they share.
+//! A model for each group of targets, on its own projection of the inputs.
 
 use crate::data::check;
 use crate::error::{Error, Result};
@@ -7,8 +7,7 @@ use crate::model::regressor::Regressor;
 use crate::model::scratch::Scratch;
 use crate::transform::learned_metric::LearnedMetric;
 
-/// Models of groups of targets, each of which looks at its own part of what a [`LearnedMetric`] makes of
-/// the inputs.
+/// One model for each group of targets. Each reads its own outputs of a [`LearnedMetric`].
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "GroupedParts", into = "GroupedParts"))]
@@ -26,7 +25,8 @@ struct GroupedParts {
 }
 
 impl GroupedRegressor {
-    /// Puts a metric and the models of its groups together; every target belongs to one group.
+    /// Combines a metric with one model for each of its groups. Every target must belong to exactly
+    /// one group.
     pub fn from_parts(metric: LearnedMetric, models: Vec<Model>) -> Result<Self> {
         check::length("models of groups", metric.groups.len(), models.len())?;
         let ranks = metric.groups.iter().map(|group| group.rank);

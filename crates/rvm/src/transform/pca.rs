@@ -7,13 +7,13 @@ use crate::data::check;
 use crate::error::Result;
 use crate::linalg;
 
-/// Inputs that belong together, and how many of their principal components are kept.
+/// A block of consecutive inputs, and how many of its principal components are kept.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FeatureBlock {
-    /// How many inputs, at least 1, after those of the blocks before.
+    /// Number of inputs, at least 1; they follow those of the previous blocks.
     pub inputs: usize,
-    /// How many components at most.
+    /// Maximum number of components.
     pub components: usize,
 }
 

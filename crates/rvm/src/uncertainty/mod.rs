@@ -1,4 +1,4 @@
-//! What a regression leaves open: several answers, with their weights.
+//! Several weighted hypotheses around a prediction.
 
 pub(crate) mod parts;
 mod principal_points;
@@ -11,15 +11,15 @@ use crate::model::parts::known;
 use crate::uncertainty::parts::ResidualKdeParts;
 use crate::uncertainty::principal_points::PrincipalPoints;
 
-/// The distribution of the targets given what a regression predicts.
+/// The conditional density of the targets given a regressor's prediction.
 ///
-/// Around a prediction ŷ(x) the targets are spread as the regression erred on the samples whose
-/// predictions are nearest to ŷ(x), a kernel estimate of the conditional density with the mean
-/// taken from the regression (Hyndman, Bashtannyk and Grunwald 1996). The samples must not be those
-/// that the regression was fitted to, whose errors are too small.
+/// The residuals of held-out samples whose predictions are nearest to ŷ(x) estimate how the targets
+/// spread around ŷ(x): a kernel density estimate with the mean taken from the regressor (Hyndman,
+/// Bashtannyk and Grunwald 1996). Do not use the samples that the regressor was fitted to: their
+/// residuals are too small.
 ///
-/// It is summed up by a few [`Hypothesis`]es: the prediction itself, and beside it principal points
-/// (Flury 1990), placed so that the truth is as near as possible to the nearest of them.
+/// A few [`Hypothesis`] values summarise it: the prediction itself, and principal points (Flury
+/// 1990), placed so that the nearest of them is as close as possible to the truth.
 ///
 /// ```
 /// use phalanx_rvm::{ResidualKde, faer::Mat};
@@ -43,26 +43,24 @@ pub struct ResidualKde {
     parts: ResidualKdeParts,
 }
 
-/// One answer among several.
+/// One of several weighted answers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hypothesis {
     /// The m targets.
     pub mean: Vec<f64>,
-    /// How far the targets that this answer stands for stray from it: root mean square, for each
-    /// target. Where they are too few to tell, how far all errors nearby stray from the prediction;
-    /// infinite where there are none.
+    /// Standard deviation of each target among the residuals nearest to this hypothesis. If they
+    /// are fewer than two or equal, the root mean square of all residuals nearby; infinite if these
+    /// are all zero.
     pub std: Vec<f64>,
-    /// The share of the distribution that is nearer to this answer than to the others; the
-    /// weights sum to 1.
+    /// Share of the residuals nearby that are nearest to this hypothesis. The weights sum to 1.
     pub weight: f64,
 }
 
 impl ResidualKde {
-    /// From a regression's predictions, m×n, for n samples that it was not fitted to, and their
-    /// targets, m×n. Around a prediction the `neighbours` nearest of the samples speak.
+    /// Fits predictions, m×n, of held-out samples to their targets, m×n. The `neighbours` nearest
+    /// samples are used for each prediction.
     ///
-    /// `units` says for each target what difference counts as 1 where distances are measured; all
-    /// above 0.
+    /// `units` are the scales of the targets in distances, all above 0.
     pub fn fit(
         predictions: MatRef<'_, f64>,
         targets: MatRef<'_, f64>,
@@ -86,18 +84,18 @@ impl ResidualKde {
         })
     }
 
-    /// Puts one together from its parts, checked against each other.
+    /// Assembles a density from its parts, which are validated.
     pub fn from_parts(parts: ResidualKdeParts) -> Result<Self> {
         parts.check()?;
         Ok(Self { parts })
     }
 
-    /// Its parts.
+    /// The parts.
     pub fn into_parts(self) -> ResidualKdeParts {
         self.parts
     }
 
-    /// A look at the parts.
+    /// The parts, borrowed.
     pub fn parts(&self) -> &ResidualKdeParts {
         &self.parts
     }
@@ -107,9 +105,9 @@ impl ResidualKde {
         self.parts.outputs
     }
 
-    /// At most `count` hypotheses (at least 1) around a regression's `prediction` (length m): the
-    /// prediction first, then the others by falling weight. Fewer where the errors nearby differ
-    /// in fewer ways.
+    /// At most `count` hypotheses (at least 1) around a `prediction` (length m): the prediction
+    /// first, then the others by decreasing weight. Fewer if the residuals nearby form fewer
+    /// clusters.
     pub fn hypotheses(&self, prediction: &[f64], count: usize) -> Result<Vec<Hypothesis>> {
         check::length("prediction", self.outputs(), prediction.len())?;
         if let Some(row) = prediction.iter().position(|&v| !check::usable(v)) {

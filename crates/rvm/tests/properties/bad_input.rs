@@ -164,7 +164,7 @@ fn hyper_parameters_out_of_range_are_named() {
         KernelRidge { regularisation: lambda, ..KernelRidge::default() }.fit(x, y).unwrap_err();
     assert!(matches!(error, Error::Empty { .. }));
     for asked in [0, 13] {
-        let count = Error::Count { asked, available: 12 };
+        let count = Error::Count { requested: asked, available: 12 };
         let stop = Stop::Count(asked);
         assert_eq!(AgarwalTriggs { stop, ..bridges }.fit(x, y).unwrap_err(), count);
         assert_eq!(
@@ -173,12 +173,12 @@ fn hyper_parameters_out_of_range_are_named() {
         );
     }
     let on = |centres: &[usize]| NystromRidge::default().fit_on(x, y, centres).unwrap_err();
-    assert_eq!(on(&[]), Error::Count { asked: 0, available: 12 });
+    assert_eq!(on(&[]), Error::Count { requested: 0, available: 12 });
     for (centres, index) in [([3, 3], 3), ([4, 2], 2), ([2, 12], 12)] {
         assert_eq!(on(&centres), Error::Index { what: "centres", index, available: 12 });
     }
     let cascade = TwoStageSelection { features: Stop::Count(5), ..TwoStageSelection::default() };
-    assert_eq!(cascade.fit(x, y).unwrap_err(), Error::Count { asked: 5, available: 4 });
+    assert_eq!(cascade.fit(x, y).unwrap_err(), Error::Count { requested: 5, available: 4 });
 }
 
 /// What can be refused before there are data is refused as the fit itself would.
@@ -206,7 +206,7 @@ fn sizes_are_refused_beforehand() {
     assert_eq!(TwoStageSelection::default().check(wide), too_many);
     assert_eq!(KernelRidge::default().check(wide), Ok(()));
     let few = OrthogonalLeastSquares { count: 4, ..OrthogonalLeastSquares::default() };
-    assert_eq!(few.check(wide), Err(Error::Count { asked: 4, available: 3 }));
+    assert_eq!(few.check(wide), Err(Error::Count { requested: 4, available: 3 }));
     let ridge = Ridge { lambda: -1.0, ..Ridge::default() };
     assert!(matches!(ridge.check(size), Err(Error::Parameter { name: "lambda", .. })));
 }

@@ -157,7 +157,7 @@ fn what_cannot_be_learnt_from_is_refused_by_name() {
     ));
     assert_eq!(
         learn(learner(3, 1), &blocks(), &[vec![2]]),
-        Error::Count { asked: 3, available: 2 }
+        Error::Index { what: "groups", index: 2, available: 2 }
     );
     assert!(matches!(learn(learner(0, 1), &blocks(), &[vec![0]]), Error::Count { .. }));
     assert!(matches!(learn(learner(3, 0), &blocks(), &[vec![0]]), Error::Count { .. }));

@@ -91,7 +91,7 @@ fn parts_that_do_not_fit_are_named() {
             }
         }),
     ];
-    let bridges = FITTERS.iter().find(|(name, _)| *name == "bridges, Gaussian").unwrap().1;
+    let bridges = FITTERS.iter().find(|(name, _)| *name == "Agarwal-Triggs, Gaussian").unwrap().1;
     let model = bridges(x.as_ref(), y.as_ref()).unwrap().model;
     for (expected, damage) in damages {
         let mut parts = model.clone().into_parts();

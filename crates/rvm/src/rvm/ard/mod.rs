@@ -1,4 +1,4 @@
-//! Relevance vector machines that find their Gaussians' widths by themselves.
+//! Relevance vector machines with optimised length scales.
 
 mod evidence;
 mod lbfgs;
@@ -21,28 +21,28 @@ use crate::rvm::multi_output::{MultiOutputRvm, Vectors};
 /// moves no exponent by as much.
 const IRRELEVANT: f64 = 1e-6;
 
-/// Which inputs share a width.
+/// Which inputs share a length scale.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum LengthScales {
-    /// All of them.
+    /// One for all inputs.
     Shared,
-    /// Each has its own: automatic relevance determination of inputs.
+    /// One for each input: automatic relevance determination.
     Ard,
-    /// Consecutive inputs, so many for each width; together all inputs.
+    /// One for each block of consecutive inputs. The sizes of the blocks add up to the number of
+    /// inputs.
     Blocks(Vec<usize>),
 }
 
-/// The multivariate relevance vector machine with its Gaussians' widths learnt too: for one target
-/// Tipping's "η-RVM" (2001, section 4.2 and appendix C), with a width for all inputs, for each or
-/// for blocks of them.
+/// [`MultiOutputRvm`] with optimised length scales: one for all inputs, for each input, or for
+/// blocks of them. For one target it is Tipping's "η-RVM" (2001, section 4.2 and appendix C). No
+/// phalanx pipeline uses it; it is for those who use this crate alone.
 ///
-/// Two climbs of the same evidence take turns: over the vectors at given widths, as
-/// [`MultiOutputRvm`] does; and over the logs of widths and precisions together at given vectors,
-/// by L-BFGS with the closed-form gradient. The trace holds the evidence after each turn. Inputs
-/// that the evidence finds irrelevant are no longer read
-/// ([`Model::selected_features`](crate::Model::selected_features)); what is left of the widths
-/// [`Model::length_scales`](crate::Model::length_scales) tells.
+/// The evidence is maximised in turns: over the vectors at fixed length scales, as in
+/// [`MultiOutputRvm`], and over the logs of length scales and precisions at fixed vectors, by
+/// L-BFGS with the closed-form gradient. The trace holds the evidence after each turn. Irrelevant
+/// inputs are dropped ([`Model::selected_features`](crate::Model::selected_features));
+/// [`Model::length_scales`](crate::Model::length_scales) returns the optimised scales.
 ///
 /// ```
 /// use phalanx_rvm::{ArdRvm, LengthScales, faer::Mat};
@@ -65,13 +65,13 @@ pub enum LengthScales {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ArdRvm {
-    /// The machine; its kernel, which must be Gaussian, is where the widths start.
+    /// The machine. Its kernel must be Gaussian; its bandwidth is the initial one.
     pub rvm: MultiOutputRvm,
     /// Which inputs share a width.
     pub length_scales: LengthScales,
-    /// Most turns, at least 1.
+    /// Maximum number of turns, at least 1.
     pub rounds: usize,
-    /// Most steps over the widths in a turn, at least 1.
+    /// Maximum number of L-BFGS steps in a turn, at least 1.
     pub steps: usize,
 }
 
@@ -92,15 +92,15 @@ impl ArdRvm {
         self.fit_observed(x, y, &|_| ())
     }
 
-    /// Refuses settings out of range, and problems too large for this fitter. What
-    /// [`fit`](Self::fit) refuses for its data alone, this cannot know.
+    /// Checks the settings and the size of a problem before there are data. [`fit`](Self::fit) can
+    /// still fail because of the values of the data.
     pub fn check(&self, size: ProblemSize) -> Result<()> {
         self.start()?;
         self.ties(size.inputs)?;
         self.rvm.check(size)
     }
 
-    /// Fits as [`fit`](Self::fit) does, and tells `observe` after each step over the vectors.
+    /// Like [`fit`](Self::fit), with a call of `observe` after each step over the vectors.
     pub fn fit_observed(
         &self,
         x: MatRef<'_, f64>,

@@ -1,4 +1,4 @@
-//! Taking steps until none gains, and starting again nearby.
+//! Ascent to a local optimum, and restarts.
 
 use crate::data::check;
 use crate::error::{Error, Result};
@@ -12,19 +12,19 @@ const STEPS_BETWEEN: usize = 10;
 /// A restart leaves out one, two or three of so many parts of the active columns, in turn.
 const PARTS: usize = 6;
 
-/// How the evidence is climbed.
+/// Settings of the ascent.
 pub(crate) struct Ascent {
     /// Least noise variance, as a share of the target's variance, in (0, 1].
     pub(crate) noise_floor: f64,
-    /// Nats that each active column must add; at least 0.
+    /// Log evidence that each active column must add, in nats; at least 0.
     pub(crate) min_evidence_gain: f64,
     /// Steps that gain no more, in nats, are not taken; above 0.
     pub(crate) tolerance: f64,
     /// Most steps, at least 1.
     pub(crate) max_iterations: usize,
-    /// Climbs after the first.
+    /// Number of restarts.
     pub(crate) restarts: usize,
-    /// Most active columns.
+    /// Maximum number of active columns.
     pub(crate) most: usize,
 }
 
@@ -50,14 +50,14 @@ impl Ascent {
         })
     }
 
-    /// No column is active.
+    /// The start: no column is active.
     pub(crate) fn start<'a>(&self, targets: Targets<'a>) -> Result<MarginalLikelihood<'a>> {
         MarginalLikelihood::new(targets, self.noise_floor, self.most, self.min_evidence_gain)
     }
 
-    /// Climbs from where it is put, and then again from the best so far without some neighbours, which
-    /// finds others in their place (iterated local search: Lourenço, Martin and Stützle 2003).
-    /// One column at a time ends where no change of one column gains, of which there are many.
+    /// Ascends from the given start, then restarts from the best solution without some neighbouring
+    /// columns (iterated local search: Lourenço, Martin and Stützle 2003), since changes of one
+    /// column at a time have many local optima.
     pub(crate) fn run<'a>(
         &self,
         mut best: MarginalLikelihood<'a>,
@@ -82,8 +82,8 @@ impl Ascent {
         Ok((best, Trace { converged, objective }))
     }
 
-    /// Takes the step that gains the most, again and again, and tells of each. It
-    /// has converged when nothing gains by numbers computed from scratch.
+    /// Takes the best step until none gains. Convergence is checked with quantities computed from
+    /// scratch.
     fn climb(
         &self,
         evidence: &mut MarginalLikelihood<'_>,
@@ -115,7 +115,7 @@ impl Ascent {
     }
 }
 
-/// An active column and those most correlated with it: another one in every round.
+/// An active column and those most correlated with it, another one in every round.
 fn neighbours(evidence: &MarginalLikelihood<'_>, round: usize) -> Vec<usize> {
     // By their precisions, so that the order of the samples does not matter.
     let (active, alpha) = evidence.active();

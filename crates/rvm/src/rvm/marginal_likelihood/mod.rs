@@ -33,7 +33,7 @@ pub(crate) struct MarginalLikelihood<'a> {
     floor: f64,
     /// Most active columns.
     most: usize,
-    /// Nats that each active column must add to the evidence.
+    /// Log evidence that each active column must add, in nats.
     min_evidence_gain: f64,
     /// Noise variance σⱼ².
     noise: Vec<f64>,
@@ -140,7 +140,7 @@ impl<'a> MarginalLikelihood<'a> {
         -0.5 * (normal + self.outputs() * self.log_determinant)
     }
 
-    /// What is climbed: the evidence less the min_evidence_gain of the active columns.
+    /// The objective: the evidence less `min_evidence_gain` for each active column.
     fn objective(&self) -> f64 {
         self.value() - self.min_evidence_gain * self.active.len() as f64
     }

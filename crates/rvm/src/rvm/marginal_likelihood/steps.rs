@@ -112,11 +112,11 @@ impl MarginalLikelihood<'_> {
     }
 
     /// The best change of one column: the evidence is greatest at α = m s²/(Σⱼ qⱼ²/σⱼ² − m s), or
-    /// without the column if that is negative or not worth the column's min_evidence_gain.
+    /// without the column if that is negative or gains less than `min_evidence_gain`.
     fn step(&self, column: usize, worth: Worth) -> Step {
         let (Worth { s, quality, alpha: now }, m) = (worth, self.outputs());
         let theta = quality - m * s;
-        // ℓ(α), what the column adds to the log evidence, less its min_evidence_gain.
+        // ℓ(α), what the column adds to the log evidence, less `min_evidence_gain`.
         let adds = |alpha: f64| {
             if alpha.is_infinite() {
                 return 0.0;
