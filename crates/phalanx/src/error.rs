@@ -24,6 +24,15 @@ pub enum Error {
         /// A place that the window would show, px of the picture.
         pixel: DVec2,
     },
+    /// No camera sees anything like a hand, in any frame.
+    #[error("no camera sees anything like a hand; are the masks of a hand, over 127?")]
+    NoHand,
+    /// A hand that would be behind a camera that sees it.
+    #[error("camera '{camera}': the hand would be behind it")]
+    BehindCamera {
+        /// The camera's name.
+        camera: String,
+    },
     /// A silhouette has no shape contexts.
     #[error("camera '{camera}': {reason}")]
     ShapeContext {

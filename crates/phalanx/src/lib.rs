@@ -9,10 +9,12 @@ mod describe;
 mod descriptor;
 mod error;
 mod estimator;
+mod fitting;
 mod gathered;
 mod global_pose;
 mod histograms;
 mod hypotheses;
+mod localize;
 mod losses;
 mod model_file;
 mod observation;
@@ -44,9 +46,14 @@ pub use describe::{Describer, OrientationRule, Sight, WORKING_SIZE, working_came
 pub use descriptor::{Beside, Descriptor, describe_scenes};
 pub use error::{Error, Result};
 pub use estimator::{Estimate, Estimator, Workspace};
+pub use fitting::{
+    FitDoubt, FrameFit, Missing, Proportions, TakeFit, TakeFrame, TakeSettings, ViewFit,
+    VolumeEstimate, estimate_volume, fit_frame, fit_take,
+};
 pub use global_pose::{GlobalStart, initial_global};
 pub use histograms::{ViewCodebooks, describe_with};
 pub use hypotheses::Hypothesis;
+pub use localize::{Arm, Ball, Detections, HandCrop, Placement, associate};
 pub use losses::{LossReason, Losses};
 pub use observation::{Observation, ObservedView};
 pub use overlay::{draw_overlay, draw_window_overlay, working_window};

@@ -9,6 +9,7 @@ use crate::doubt::{CameraDoubt, HandDoubt};
 use crate::fit::{State, overlaps};
 use crate::problem::{Frame, Freedom, Problem};
 use crate::refinement::ANY_ENERGY;
+use crate::system::shared_covariance;
 use crate::view::View;
 use crate::{Doubt, Error, Evidence, PosePrior, Refinement, Result};
 
@@ -41,7 +42,7 @@ impl Default for Calibration {
 /// One frame to calibrate from.
 #[derive(Debug, Clone)]
 pub struct CalibrationFrame {
-    /// What each camera saw, the same cameras in every frame.
+    /// What each camera saw; the same cameras in every frame where cameras are fitted.
     pub evidence: Vec<Evidence>,
     /// Where to start.
     pub start: Pose,
@@ -54,6 +55,9 @@ pub struct CalibrationFrame {
 pub struct Calibrated {
     /// The hand.
     pub hand: HandShape,
+    /// How well each of its proportions is known, standard deviations of logarithms: the size's, then
+    /// one for every bone and radius in the order of [`HandShape::varied`].
+    pub hand_std: Vec<f64>,
     /// The cameras; those that were doubted and do not move, where they were found to stand, the others as given.
     pub cameras: Vec<Camera>,
     /// The pose in each frame.
@@ -83,7 +87,7 @@ impl Calibration {
         let first = frames.first().ok_or(Error::NoEvidence)?;
         for (frame, CalibrationFrame { evidence, .. }) in frames.iter().enumerate() {
             let (found, expected) = (evidence.len(), first.evidence.len());
-            if found != expected {
+            if found != expected && self.cameras.is_some() {
                 return Err(Error::ViewCount { frame, found, expected });
             }
         }
@@ -115,8 +119,15 @@ impl Calibration {
             let moved = correction.map(|own| own.camera(evidence.camera(), rest.translation));
             moved.unwrap_or_else(|| evidence.camera().clone())
         };
+        let (_, known) = problem.shared_prior(shared);
+        let covariance = shared_covariance(&outcome.frames, &known).ok_or_else(|| {
+            let reason = "leaves proportions open that the silhouettes do not tell".to_owned();
+            Error::Precision { reason }
+        })?;
+        let numbers = 0..shared.proportions.logarithms.len();
         Ok(Calibrated {
             hand: shared.proportions.hand(given),
+            hand_std: numbers.map(|k| covariance[(k, k)].max(0.0).sqrt()).collect(),
             cameras: first.evidence.iter().enumerate().map(camera).collect(),
             poses: outcome.state.moments.iter().map(|moment| moment.pose).collect(),
             overlaps,

@@ -19,6 +19,8 @@ pub struct Evidence {
     known: GrayImage,
     /// How far off its place the border is, over what it is where pixels were seen at once.
     grain: f64,
+    /// How much a place of the border counts.
+    weight: f64,
     /// Unit directions of the cracks in the camera's frame.
     rays: Vec<DVec3>,
     /// Their places, px.
@@ -75,6 +77,7 @@ impl Evidence {
             mask: mask.clone(),
             known,
             grain: 1.0,
+            weight: 1.0,
             rays: rays.ok_or_else(|| Error::NoBorder { camera: name() })?,
             normals: cracks.iter().map(|&crack| outwards(mask, crack)).collect(),
             nearest: nearest_cracks(&cracks, expected),
@@ -87,6 +90,19 @@ impl Evidence {
     #[must_use]
     pub fn resampled(self, pixel: f64) -> Self {
         Self { grain: 1.0_f64.hypot(0.5 * pixel), ..self }
+    }
+
+    /// The same, where each place of the border counts `weight` times as much as one that is known to
+    /// [`Refinement::noise`](crate::Refinement::noise) independently of its neighbours: places that
+    /// err together, or further, count less.
+    #[must_use]
+    pub fn weighted(self, weight: f64) -> Self {
+        Self { weight, ..self }
+    }
+
+    /// How much a place of the border counts.
+    pub(crate) fn weight(&self) -> f64 {
+        self.weight
     }
 
     /// Standard deviation of the border's place over that of a mask whose pixels were seen at once.

@@ -40,10 +40,17 @@ impl Outcome {
         Self { steps, ..better }
     }
 
+    /// For each view of the first frame, the share of its border that is unexplained.
+    pub(crate) fn unexplained(&self, measure: Measure) -> Vec<f64> {
+        let borders = self.frames[0].borders.iter();
+        borders.map(|border| measure.unexplained(border.energy, border.count)).collect()
+    }
+
     /// Root of the mean robust squared distance of the borders, px, given their noise.
     pub(crate) fn border_px(&self, noise: f64) -> f64 {
-        let energy: f64 = self.frames.iter().map(|frame| frame.border.energy).sum();
-        let count: usize = self.frames.iter().map(|frame| frame.border.count).sum();
+        let borders = || self.frames.iter().flat_map(|frame| &frame.borders);
+        let energy: f64 = borders().map(|border| border.energy).sum();
+        let count: usize = borders().map(|border| border.count).sum();
         noise * (2.0 * energy / count.max(1) as f64).sqrt()
     }
 }

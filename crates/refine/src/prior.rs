@@ -2,7 +2,7 @@
 
 use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, Side};
-use phalanx_hand::{Digit, Dof, Pose, Unit, abduction_limit};
+use phalanx_hand::{Digit, Dof, Pose, abduction_limit};
 
 use crate::{Error, Result};
 
@@ -225,18 +225,18 @@ impl PosePrior {
     }
 }
 
-/// How far a number is beyond its plausible range (0 within it), and how far it may be.
+/// How far an angle of a joint is beyond its plausible range (0 within it), and how far it may be. Where
+/// the hand is and how it is turned has no range: a turn by 181° is one by −179°.
 fn beyond_range(dof: Dof, pose: &Pose) -> (f64, f64) {
     const SOFT_DEG: f64 = 2.0;
-    const SOFT_MM: f64 = 20.0;
+    if dof.index() >= Dof::ThetaX.index() {
+        return (0.0, SOFT_DEG.to_radians());
+    }
     let abduction = Digit::FINGERS.iter().find(|finger| finger.dofs()[0] == dof);
     let (low, high) = abduction.map_or(dof.range(), |finger| {
         let limit = abduction_limit(pose[finger.dofs()[1]]);
         (-limit, limit)
     });
     let excess = (pose[dof] - high).max(0.0) + (pose[dof] - low).min(0.0);
-    match dof.unit() {
-        Unit::Angle => (excess, SOFT_DEG.to_radians()),
-        Unit::Length => (excess, SOFT_MM),
-    }
+    (excess, SOFT_DEG.to_radians())
 }

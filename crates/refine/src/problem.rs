@@ -53,12 +53,37 @@ pub(crate) struct Measure {
     pub(crate) margin: f64,
     /// Of so many cracks one is looked at.
     pub(crate) every: usize,
+    /// The share of its border from which on a view that is left unexplained counts less; infinite
+    /// where all views are believed.
+    pub(crate) disagreement: f64,
 }
 
 impl Measure {
-    fn energy(&self, residual: f64) -> f64 {
+    pub(crate) fn energy(&self, residual: f64) -> f64 {
         let (s, r) = (self.reach * self.reach, residual * residual);
         0.5 * s * r / (s + r) * self.every as f64 / (self.noise * self.noise)
+    }
+
+    /// The share of a border that is unexplained, 0 to 1.
+    pub(crate) fn unexplained(&self, energy: f64, count: usize) -> f64 {
+        energy / (count.max(1) as f64 * self.most())
+    }
+
+    /// What share of its energy a view of which so much is unexplained adds to that of a pose, and of its
+    /// slope: the robust measure once more, of whole views. A view that is left half of what disagrees
+    /// counts fully. Of fewer than three views none is known to be wrong.
+    fn belief(&self, unexplained: f64, views: usize) -> [f64; 2] {
+        if views < 3 || self.disagreement.is_infinite() {
+            return [1.0; 2];
+        }
+        let falls = 1.0 / (1.0 + unexplained / self.disagreement);
+        let full = 1.5 * 1.5;
+        [full * falls, full * falls * falls]
+    }
+
+    /// The energy of a residual far beyond reach.
+    pub(crate) fn most(&self) -> f64 {
+        0.5 * self.reach * self.reach * self.every as f64 / (self.noise * self.noise)
     }
 
     fn weight(&self, residual: f64) -> f64 {
@@ -70,7 +95,7 @@ impl Measure {
     /// How far a view's border lies outside the hand's, px: what segmentation adds all around or
     /// takes away. It is where the energy of a view's distances has a minimum, looked for from
     /// nothing, so that a pose has one energy, whatever was tried before it.
-    fn margin(&self, distances: &[f64]) -> f64 {
+    pub(crate) fn margin(&self, distances: &[f64]) -> f64 {
         const CLOSE_PX: f64 = 1e-7;
         // Beyond all distances everything pulls back.
         let (mut low, mut high) =
@@ -198,6 +223,7 @@ impl Problem<'_> {
         system.add_prior(prior, &moment.pose);
         system.add_known(corrections, &self.known_of(&moment.corrections));
         let mut rows = Rows { dofs: slots(prior.dofs()), own: Row::new(), shared: Row::new() };
+        let views_seen = evidence.len();
         for (v, (view, evidence)) in views.iter_mut().zip(*evidence).enumerate() {
             let correction = moment.corrections.get(v).or(shared.corrections.get(v));
             let place = Place::new(evidence, correction, self.rest.translation);
@@ -205,6 +231,10 @@ impl Problem<'_> {
             let distances = view.matches.iter().map(|found| place.scale * found.passing.distance);
             let distances: Vec<f64> = distances.collect();
             let margin = measure.margin(&distances);
+            let energies: f64 = distances.iter().map(|d| measure.energy(d - margin)).sum();
+            let unexplained = measure.unexplained(energies, distances.len());
+            let belief = measure.belief(unexplained, views_seen);
+            system.begin_border(belief.map(|share| share * evidence.weight()));
             system.add_known(numbers + v, &[Known::new(margin, measure.margin)]);
             for (found, distance) in view.matches.iter().zip(distances) {
                 let residual = distance - margin;
@@ -251,6 +281,13 @@ impl Known {
     }
 }
 
+/// Pixels that a millimetre is wide at a point of the world, over the border's grain.
+pub(crate) fn place_scale(evidence: &Evidence, at: DVec3) -> f64 {
+    let camera = evidence.camera();
+    let focal = (camera.intrinsics.fx * camera.intrinsics.fy).sqrt();
+    focal / camera.extrinsics.to_camera(at).length() / evidence.grain()
+}
+
 /// Where a camera stands.
 struct Place<'a> {
     evidence: &'a Evidence,
@@ -267,14 +304,13 @@ struct Place<'a> {
 impl<'a> Place<'a> {
     fn new(evidence: &'a Evidence, correction: Option<&Correction>, pivot: DVec3) -> Self {
         let camera = evidence.camera();
-        let focal = (camera.intrinsics.fx * camera.intrinsics.fy).sqrt();
         let motion = correction.map(|correction| correction.motion(pivot));
         let turned = motion.map_or(DMat3::IDENTITY, |motion| motion.matrix3.transpose());
         Self {
             evidence,
             motion,
             pivot,
-            scale: focal / camera.extrinsics.to_camera(pivot).length() / evidence.grain(),
+            scale: place_scale(evidence, pivot),
             back: turned * camera.extrinsics.rotation.transpose(),
         }
     }
@@ -433,7 +469,8 @@ mod tests {
 
     #[test]
     fn a_margin_is_where_the_energy_is_least() {
-        let measure = Measure { reach: 1.0, noise: 0.5, margin: 1.0, every: 1 };
+        let measure =
+            Measure { reach: 1.0, noise: 0.5, margin: 1.0, every: 1, disagreement: f64::INFINITY };
         assert_eq!(measure.margin(&[]), 0.0);
         assert_eq!(measure.margin(&[0.0; 9]), 0.0);
         for (offset, noise) in [(0.3, 0.4), (-0.8, 0.1), (6.0, 0.3), (-20.0, 3.0)] {
@@ -514,7 +551,7 @@ mod tests {
                     cameras: Some(CameraDoubt { turn: 1e6, shift: 1e6, moves }),
                 },
             };
-            let measure = Measure { reach: 3.0, noise: 0.5, margin: 1.0, every: 7 };
+            let measure = Measure { reach: 3.0, noise: 0.5, margin: 1.0, every: 7, disagreement: f64::INFINITY };
             let (moment, shared) = (problem.moment(0, &pose), problem.shared());
             let mut views: Vec<View> =
                 evidence.iter().map(|evidence| View::new(evidence).unwrap()).collect();

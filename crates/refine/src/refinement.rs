@@ -26,6 +26,9 @@ pub struct Refinement {
     pub retries: usize,
     /// Root of the mean (robust) squared distance of the borders that needs no second try, px.
     pub content: f64,
+    /// The share of its border from which on a view that a pose leaves unexplained counts less, so that one
+    /// that shows something else cannot drag the pose along; `None` where all views are believed.
+    pub disagreement: Option<f64>,
     /// What may be otherwise than given; `None` where hand and cameras are certain.
     pub doubt: Option<Doubt>,
 }
@@ -90,6 +93,9 @@ pub struct Refined {
     pub covariance: Vec<f64>,
     /// Intersection over union of the drawn and the observed silhouette, for each view.
     pub overlaps: Vec<f64>,
+    /// For each view, how much of its border the pose leaves unexplained: the mean robust squared
+    /// distance over the most that it can be, 0 to 1.
+    pub unexplained: Vec<f64>,
     /// Root of the mean (robust) squared distance of the borders, px.
     pub border_px: f64,
     /// Whether hand and cameras had to be doubted.
@@ -118,6 +124,7 @@ impl Default for Refinement {
             margin: 1.0,
             retries: 1,
             content: 0.29,
+            disagreement: None,
             doubt: None,
         }
     }
@@ -212,6 +219,7 @@ impl Refinement {
                 Error::Precision { reason }
             })?,
             overlaps,
+            unexplained: best.unexplained(self.finest()),
             border_px: best.border_px(self.noise),
             energy: best.energy,
             doubted,
@@ -336,8 +344,14 @@ impl Refinement {
         self.measure(self.levels.last().expect("checked"))
     }
 
-    fn measure(&self, level: &Level) -> Measure {
-        Measure { reach: level.reach, noise: self.noise, margin: self.margin, every: level.every }
+    pub(crate) fn measure(&self, level: &Level) -> Measure {
+        Measure {
+            reach: level.reach,
+            noise: self.noise,
+            margin: self.margin,
+            every: level.every,
+            disagreement: self.disagreement.unwrap_or(f64::INFINITY),
+        }
     }
 
     pub(crate) fn check(&self) -> Result<()> {
@@ -347,6 +361,9 @@ impl Refinement {
         }
         if !(self.margin > 0.0 && self.margin.is_finite()) {
             return wrong("margin", self.margin, "positive");
+        }
+        if let Some(value) = self.disagreement.filter(|value| value.is_nan() || *value <= 0.0) {
+            return wrong("disagreement", value, "positive");
         }
         for level in &self.levels {
             if !(level.reach > 0.0 && level.reach.is_finite()) {

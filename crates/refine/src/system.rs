@@ -1,6 +1,6 @@
 //! The normal equations of a fit: one block for each frame's pose, one for what all frames share.
 
-use faer::linalg::solvers::Solve;
+use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, MatRef, Side};
 use phalanx_hand::Pose;
 
@@ -18,8 +18,8 @@ pub(crate) struct FrameSystem {
     shared: usize,
     /// The frame's share of the energy.
     pub(crate) energy: f64,
-    /// That of the border.
-    pub(crate) border: Border,
+    /// That of each view's border.
+    pub(crate) borders: Vec<Border>,
     own_hessian: Vec<f64>,
     /// `own` × `shared`.
     mixed_hessian: Vec<f64>,
@@ -28,11 +28,14 @@ pub(crate) struct FrameSystem {
     shared_gradient: Vec<f64>,
 }
 
-/// What the border's residuals add up to.
+/// What the residuals of one view's border add up to.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Border {
+    /// Half the robust squared distances over the noise, each place counting once.
     pub(crate) energy: f64,
     pub(crate) count: usize,
+    /// How much each place counts in the frame's energy, and in its slope.
+    pub(crate) weights: [f64; 2],
 }
 
 impl FrameSystem {
@@ -42,13 +45,26 @@ impl FrameSystem {
             own,
             shared,
             energy: 0.0,
-            border: Border::default(),
+            borders: Vec::new(),
             own_hessian: vec![0.0; own * own],
             mixed_hessian: vec![0.0; own * shared],
             shared_hessian: vec![0.0; shared * shared],
             own_gradient: vec![0.0; own],
             shared_gradient: vec![0.0; shared],
         }
+    }
+
+    /// The Hessian of all unknowns, the frame's own first.
+    pub(crate) fn whole_hessian(&self) -> Mat<f64> {
+        let (n, shared) = (self.own, self.shared);
+        Mat::from_fn(n + shared, n + shared, |i, j| {
+            let (low, high) = (i.min(j), i.max(j));
+            match (low < n, high < n) {
+                (_, true) => self.own_hessian[low * n + high],
+                (true, false) => self.mixed_hessian[(high - n) * n + low],
+                (false, false) => self.shared_hessian[(low - n) * shared + (high - n)],
+            }
+        })
     }
 
     #[cfg(test)]
@@ -75,7 +91,7 @@ impl FrameSystem {
         }
     }
 
-    /// Adds a residual of the border. Both rows are in ascending order.
+    /// Adds a residual of the last view's border. Both rows are in ascending order.
     pub(crate) fn add_border(
         &mut self,
         residual: f64,
@@ -84,9 +100,16 @@ impl FrameSystem {
         own: &Row,
         shared: &Row,
     ) {
-        self.border.energy += energy;
-        self.border.count += 1;
-        self.add(residual, energy, weight, own, shared);
+        let border = self.borders.last_mut().expect("a view's border was begun");
+        border.energy += energy;
+        border.count += 1;
+        let [of_energy, of_slope] = border.weights;
+        self.add(residual, of_energy * energy, of_slope * weight, own, shared);
+    }
+
+    /// Begins the border of the next view.
+    pub(crate) fn begin_border(&mut self, weights: [f64; 2]) {
+        self.borders.push(Border { weights, ..Border::default() });
     }
 
     /// Adds any residual. Both rows are in ascending order.
@@ -186,12 +209,33 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
+/// The covariance of what all frames share, their own unknowns being fitted with it.
+pub(crate) fn shared_covariance(
+    frames: &[FrameSystem],
+    shared_prior: &[Known],
+) -> Option<Mat<f64>> {
+    let shared = shared_prior.len();
+    let mut reduced = Mat::<f64>::zeros(shared, shared);
+    for (k, known) in shared_prior.iter().enumerate() {
+        reduced[(k, k)] += known.hessian;
+    }
+    for frame in frames {
+        let whole = frame.whole_hessian();
+        let n = frame.own;
+        let factor = whole.as_ref().submatrix(0, 0, n, n).llt(Side::Lower).ok()?;
+        let mixed = whole.as_ref().submatrix(0, n, n, shared);
+        reduced += whole.as_ref().submatrix(n, n, shared, shared);
+        reduced -= mixed.transpose() * factor.solve(mixed);
+    }
+    Some(reduced.llt(Side::Lower).ok()?.inverse())
+}
+
 /// The covariance of the first `numbers` unknowns of a frame, with everything shared being known,
 /// column after column: of the inverse of its Hessian.
 pub(crate) fn covariance(frame: &FrameSystem, numbers: usize) -> Option<Vec<f64>> {
     let n = frame.own;
     let own = Mat::from_fn(n, n, |i, j| frame.own_hessian[i.min(j) * n + i.max(j)]);
     let factor = own.llt(Side::Lower).ok()?;
-    let inverse = faer::linalg::solvers::DenseSolveCore::inverse(&factor);
+    let inverse = factor.inverse();
     Some((0..numbers * numbers).map(|k| inverse[(k % numbers, k / numbers)]).collect())
 }

@@ -42,6 +42,9 @@ pub struct LocatedHand {
 /// a hand of its own.
 const WRISTS: usize = 3;
 
+/// The ends of a component that crosses no border: five tips, and where the arm is cut off.
+const ENDS: usize = 6;
+
 /// A section that may be a wrist.
 struct Candidate {
     section: usize,
@@ -63,7 +66,7 @@ pub struct HandFinder {
 impl HandFinder {
     /// Everything in a mask of any size that may be a hand, the likeliest first: each component of
     /// at least [`Cleanup::min_hand`], with its arm coming from each place where it crosses the image
-    /// border or, where it crosses none, from either of its ends, and with its wrist at each of the
+    /// border or, where it crosses none, from each of its ends, and with its wrist at each of the
     /// few likeliest places along the arm. Speckle is removed first.
     ///
     /// # Errors
@@ -165,9 +168,11 @@ impl HandFinder {
             return crossings;
         }
         let Some(any) = self.grid.cells().next() else { return Vec::new() };
-        let one = self.geodesic.measure(&self.grid, &[any]);
-        let other = self.geodesic.measure(&self.grid, &[one]);
-        vec![vec![one], vec![other]]
+        let mut ends = vec![self.geodesic.measure(&self.grid, &[any])];
+        while ends.len() < ENDS {
+            ends.push(self.geodesic.measure(&self.grid, &ends));
+        }
+        ends.into_iter().map(|end| vec![end]).collect()
     }
 
     /// What may be the hand of the grid's component whose arm comes from some of its cells: the

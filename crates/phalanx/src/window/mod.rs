@@ -4,7 +4,7 @@ mod choice;
 mod drawn;
 mod finder;
 mod layout;
-mod resample;
+pub(crate) mod resample;
 
 use glam::DVec2;
 use image::GrayImage;
@@ -13,7 +13,7 @@ use phalanx_refine::Evidence;
 use phalanx_segmentation::{LocatedHand, Silhouette};
 use serde::{Deserialize, Serialize};
 
-use crate::Result;
+use crate::{Result, WORKING_SIZE};
 
 pub(crate) use drawn::{DrawnView, DrawnWindows};
 pub use finder::WindowFinder;
@@ -63,6 +63,9 @@ impl Window {
 
     /// A mask of the picture as the window shows it: 255 where at least half of a pixel is hand.
     pub fn resample(&self, mask: &GrayImage, seen: &mut GrayImage) {
+        if seen.dimensions() != WORKING_SIZE {
+            *seen = GrayImage::new(WORKING_SIZE.0, WORKING_SIZE.1);
+        }
         resample::resample(mask, &self.to_picture, seen);
     }
 
@@ -71,10 +74,10 @@ impl Window {
     /// # Errors
     /// A silhouette of another size than the window, or without a border.
     pub fn evidence(&self, silhouette: &Silhouette) -> Result<Evidence> {
-        let inside = resample::inside(&self.to_picture, self.picture);
+        let inside = resample::inside(&self.to_picture, WORKING_SIZE, self.picture);
         let known = |at: DVec2| inside.get_pixel(at.x as u32, at.y as u32).0[0] > 127;
         let evidence = Evidence::within(&self.camera, &silhouette.mask, known)?;
-        Ok(evidence.resampled(1.0 / resample::pixels_aside(&self.to_picture)))
+        Ok(evidence.resampled(1.0 / resample::pixels_aside(&self.to_picture, WORKING_SIZE)))
     }
 
     /// The picture's pixel for one of the window; `None` where the picture's lens has none.

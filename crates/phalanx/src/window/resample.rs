@@ -4,8 +4,6 @@ use glam::DVec2;
 use image::GrayImage;
 use phalanx_camera::PixelMap;
 
-use crate::WORKING_SIZE;
-
 /// Samples along a row between places where the map is evaluated; it is straight in between, to far
 /// less than a pixel.
 const STRETCH: u32 = 8;
@@ -13,14 +11,11 @@ const STRETCH: u32 = 8;
 /// The most samples along a side of a window's pixel.
 const MOST_SAMPLES: u32 = 4;
 
-/// Fills `seen` ([`WORKING_SIZE`]) with the mask under a map from its pixels to the mask's: 255 where
-/// the mask covers at least half of a pixel. There is nothing outside the mask.
-pub(super) fn resample(mask: &GrayImage, to_mask: &PixelMap, seen: &mut GrayImage) {
-    let (width, height) = WORKING_SIZE;
-    if seen.dimensions() != WORKING_SIZE {
-        *seen = GrayImage::new(width, height);
-    }
-    let samples = samples_aside(to_mask);
+/// Fills `seen` with the mask under a map from its pixels to the mask's: 255 where the mask covers at
+/// least half of a pixel. There is nothing outside the mask.
+pub(crate) fn resample(mask: &GrayImage, to_mask: &PixelMap, seen: &mut GrayImage) {
+    let (width, height) = seen.dimensions();
+    let samples = samples_aside(to_mask, (width, height));
     let mut row = Vec::with_capacity((width * samples) as usize);
     let mut sums = vec![0.0; width as usize];
     for y in 0..height {
@@ -39,10 +34,14 @@ pub(super) fn resample(mask: &GrayImage, to_mask: &PixelMap, seen: &mut GrayImag
     }
 }
 
-/// Which pixels of a window lie in the picture, wholly and with a neighbour: 255, all others 0.
-pub(super) fn inside(to_picture: &PixelMap, picture: (u32, u32)) -> GrayImage {
-    let (width, height) = WORKING_SIZE;
-    let least = DVec2::splat(1.5 * pixels_aside(to_picture));
+/// Which pixels of a window of some size lie in the picture, wholly and with a neighbour: 255, all
+/// others 0.
+pub(crate) fn inside(
+    to_picture: &PixelMap,
+    (width, height): (u32, u32),
+    picture: (u32, u32),
+) -> GrayImage {
+    let least = DVec2::splat(1.5 * pixels_aside(to_picture, (width, height)));
     let most = DVec2::new(f64::from(picture.0), f64::from(picture.1)) - least;
     let mut row = Vec::with_capacity(width as usize);
     let mut inside = GrayImage::new(width, height);
@@ -72,13 +71,13 @@ pub(super) fn cut(mask: &mut GrayImage, to_picture: &PixelMap, picture: DVec2) {
 }
 
 /// Samples along a side of a pixel: as many as it covers of the mask's pixels.
-fn samples_aside(to_mask: &PixelMap) -> u32 {
-    (pixels_aside(to_mask).ceil() as u32).clamp(1, MOST_SAMPLES)
+fn samples_aside(to_mask: &PixelMap, size: (u32, u32)) -> u32 {
+    (pixels_aside(to_mask, size).ceil() as u32).clamp(1, MOST_SAMPLES)
 }
 
-/// How many of the mask's pixels a pixel in the middle covers along a side.
-pub(super) fn pixels_aside(to_mask: &PixelMap) -> f64 {
-    let middle = DVec2::new(f64::from(WORKING_SIZE.0), f64::from(WORKING_SIZE.1)) / 2.0;
+/// How many of the mask's pixels a pixel in the middle of a window of some size covers along a side.
+pub(crate) fn pixels_aside(to_mask: &PixelMap, (width, height): (u32, u32)) -> f64 {
+    let middle = DVec2::new(f64::from(width), f64::from(height)) / 2.0;
     let ends = [-0.5, 0.5].map(|offset| to_mask.map(middle + DVec2::X * offset));
     let [Some(from), Some(to)] = ends else { return 1.0 };
     from.distance(to)

@@ -1,0 +1,45 @@
+//! How well each view's border is known, from how the fits of a take leave it.
+
+use phalanx_refine::{BorderNoise, BorderResiduals};
+use rayon::prelude::*;
+
+use super::frame_fit::{Found, FrameFitter};
+use crate::Result;
+
+/// Frames that borders are looked at in.
+const FRAMES: usize = 24;
+
+/// How well borders are known, view by view; `None` of a view that no frame uses.
+pub(super) fn border_noise(
+    fitter: &FrameFitter<'_>,
+    found: &[Option<Found>],
+) -> Result<Vec<Option<BorderNoise>>> {
+    let found: Vec<&Found> = found.iter().flatten().collect();
+    let chosen = super::consensus::evenly(found.len(), FRAMES);
+    let of_view = |view: usize| -> Result<Option<BorderNoise>> {
+        let mut residuals = Vec::new();
+        for &k in &chosen {
+            let Found { rest, refined, crops, left_out, .. } = found[k];
+            let Some(crop) = crops[view].as_ref().filter(|_| !left_out[view]) else { continue };
+            let frame = found[k].frame(fitter.hand);
+            let Some(evidence) = fitter.evidence_of(crop, &frame) else { continue };
+            residuals.push(BorderResiduals::of(fitter.hand, rest, &evidence, &refined.pose)?);
+        }
+        Ok(BorderNoise::of(&residuals))
+    };
+    (0..fitter.weights.len()).into_par_iter().map(of_view).collect()
+}
+
+/// How much a place of each view's border counts beside one that is known independently to `noise`, px.
+pub(super) fn weights(borders: &[Option<BorderNoise>], noise: f64) -> Vec<f64> {
+    let weight = |border: &BorderNoise| (noise / border.deviation).powi(2) / border.correlated;
+    borders.iter().map(|border| border.as_ref().map_or(1.0, weight)).collect()
+}
+
+/// The same beside the best view. Poses are fitted with these: the prior of postures is a normal
+/// distribution in place of one with two peaks, straight and folded, and pulls every finger between them
+/// when it counts as much as borders that err together.
+pub(super) fn relative(weights: &[f64]) -> Vec<f64> {
+    let most = weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    weights.iter().map(|weight| weight / most).collect()
+}

@@ -1,0 +1,141 @@
+//! Where the hand works, from frames that each say where it is.
+
+use glam::{DAffine3, DQuat, DVec3};
+use phalanx_camera::{Camera, Volume};
+use phalanx_hand::{Dof, HandShape};
+use phalanx_refine::Refinement;
+use rayon::prelude::*;
+
+use super::frame_fit::{Found, FrameFitter};
+use super::observation::{Sight, fitted_hand, length_mm};
+use super::{TakeFrame, starts};
+use crate::{Error, Progress, Result, Silent};
+
+/// Frames from which it is found where the hand works.
+const KEY_FRAMES: usize = 12;
+
+/// Least side of a working volume, mm.
+const LEAST_SIDE: f64 = 20.0;
+
+/// Where a hand works, and how far it turns there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VolumeEstimate {
+    /// The volume; its `up` is where the back of the hand points on average.
+    pub volume: Volume,
+    /// The least and the most of θ_X, θ_Y and θ_Z in it, radians.
+    pub turns: [[f64; 2]; 3],
+}
+
+/// Finds out where a hand works from what cameras saw in some frames.
+///
+/// Nothing is assumed of where fingers or back of the hand point. `hand` says whose hand it is, and of
+/// which side; a mean one will do ([`HandShape::adult`]).
+///
+/// # Errors
+/// Frames with another number of masks than cameras, or without any hand.
+pub fn estimate_volume(
+    cameras: &[Camera],
+    frames: &[TakeFrame],
+    hand: &HandShape,
+) -> Result<VolumeEstimate> {
+    let (hand, prior, refinement) = (fitted_hand(hand), starts::pose_prior()?, refinement());
+    let weights = vec![1.0; cameras.len()];
+    let fitter = FrameFitter { hand: &hand, prior: &prior, refinement: &refinement, weights };
+    let found = key_frames(cameras, frames, &fitter, &Silent)?;
+    let middle = agreed(&found, &hand)?;
+    let reach = 0.5 * length_mm(&hand);
+    let agrees = |found: &&Found| apart(&middle, &found.frame(&hand), reach) < AGREES;
+    Ok(VolumeEstimate::around(&middle, found.iter().filter(agrees), &hand))
+}
+
+/// How frames are fitted: hand and cameras are taken as they are, and starts are many.
+pub(super) fn refinement() -> Refinement {
+    Refinement { retries: 0, disagreement: Some(DISAGREEMENT), ..Refinement::of_noise(NOISE) }
+}
+
+/// A border that is as far from the hand's as this, in pixels of a crop, begins to count less: a quarter
+/// of a finger's width. How well borders are known is found from the take.
+const NOISE: f64 = 2.0;
+
+/// A view of which more than this share is unexplained begins to count less than others: hands that are
+/// drawn with other proportions and ragged borders leave about half as much.
+pub(super) const DISAGREEMENT: f64 = 0.1;
+
+/// Hands that turn by less than this, or move by as many half hands, agree.
+const AGREES: f64 = 1.5;
+
+/// Poses of some frames, spread evenly, each found with nothing known.
+pub(super) fn key_frames(
+    cameras: &[Camera],
+    frames: &[TakeFrame],
+    fitter: &FrameFitter<'_>,
+    progress: &dyn Progress,
+) -> Result<Vec<Found>> {
+    let chosen = evenly(frames.len(), KEY_FRAMES);
+    progress.begin("look for the hand", chosen.len());
+    let search = |&k: &usize| {
+        let found = fitter.search(&Sight::of(cameras, &frames[k].masks)?);
+        progress.step();
+        found
+    };
+    let found: Vec<Option<Found>> = chosen.par_iter().map(search).collect::<Result<_>>()?;
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// Where hands of some frames agree that the hand is: the frame that half of the others are nearest to.
+///
+/// # Errors
+/// No hand.
+pub(super) fn agreed(found: &[Found], hand: &HandShape) -> Result<DAffine3> {
+    let frames: Vec<DAffine3> = found.iter().map(|found| found.frame(hand)).collect();
+    let reach = 0.5 * length_mm(hand);
+    let median = |one: &DAffine3| {
+        let mut all: Vec<f64> = frames.iter().map(|other| apart(one, other, reach)).collect();
+        all.sort_by(f64::total_cmp);
+        all[all.len() / 2]
+    };
+    let best = frames.iter().min_by(|a, b| median(a).total_cmp(&median(b)));
+    best.copied().ok_or(Error::NoHand)
+}
+
+/// How far one hand's frame is from another's: the angle of its turn, and its way over `reach`, mm.
+fn apart(one: &DAffine3, other: &DAffine3, reach: f64) -> f64 {
+    let turn = DQuat::from_mat3(&(one.matrix3.transpose() * other.matrix3));
+    let angle = 2.0 * turn.w.abs().min(1.0).acos();
+    one.translation.distance(other.translation) / reach + angle
+}
+
+/// Indices spread evenly over `count`, at most `most`.
+pub(super) fn evenly(count: usize, most: usize) -> Vec<usize> {
+    let most = most.min(count);
+    (0..most).map(|k| (2 * k + 1) * count / (2 * most)).collect()
+}
+
+impl VolumeEstimate {
+    /// That of some poses around a frame that most of them are near.
+    pub(super) fn around<'a>(
+        middle: &DAffine3,
+        found: impl Iterator<Item = &'a Found>,
+        hand: &HandShape,
+    ) -> Self {
+        let found: Vec<&Found> = found.collect();
+        let frames: Vec<DAffine3> = found.iter().map(|found| found.frame(hand)).collect();
+        let (mut low, mut high) = (middle.translation, middle.translation);
+        for frame in &frames {
+            low = low.min(frame.translation);
+            high = high.max(frame.translation);
+        }
+        let sum = |axis: fn(&DAffine3) -> DVec3| frames.iter().map(axis).sum::<DVec3>();
+        let forearm = sum(|frame| frame.matrix3.z_axis).normalize_or(middle.matrix3.z_axis);
+        let up = sum(|frame| frame.matrix3.y_axis);
+        let up = up.reject_from_normalized(forearm).normalize_or(middle.matrix3.y_axis);
+        let size = (high - low).max(DVec3::splat(LEAST_SIDE));
+        let volume = Volume { center: low.midpoint(high), size, forearm, up };
+        let rest = volume.rest_frame();
+        let turns = [Dof::ThetaX, Dof::ThetaY, Dof::ThetaZ].map(|dof| {
+            let angles = found.iter().map(|found| found.pose_in(&rest, hand)[dof]);
+            angles.fold([0.0; 2], |[low, high]: [f64; 2], angle| [low.min(angle), high.max(angle)])
+        });
+        Self { volume, turns }
+    }
+}

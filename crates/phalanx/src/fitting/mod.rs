@@ -1,0 +1,20 @@
+//! Hands fitted to what calibrated cameras saw, without a trained model.
+//!
+//! [`fit_take`] goes through a whole take: where the hand works ([`estimate_volume`]), each frame from
+//! several starts, which views disagree, the hand's proportions, and each frame once more in the light
+//! of its neighbours. [`fit_frame`] fits one frame of a hand that is known.
+
+mod borders;
+mod consensus;
+mod frame_fit;
+mod observation;
+mod passes;
+mod proportions;
+mod report;
+mod starts;
+mod take;
+mod views;
+
+pub use consensus::{VolumeEstimate, estimate_volume};
+pub use report::{FitDoubt, FrameFit, Missing, ViewFit};
+pub use take::{Proportions, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take};

@@ -1,0 +1,117 @@
+//! One frame as all cameras see it, and what it tells of a hand in space.
+
+use glam::{DAffine3, DVec3};
+use image::GrayImage;
+use phalanx_camera::Camera;
+use phalanx_hand::{HandShape, Pose};
+use phalanx_segmentation::{HandFinder, LocatedHand};
+
+use crate::localize::{Arm, Ball, Detections, HandCrop, Placement, associate};
+use crate::{Error, Result};
+
+/// Placements of a frame that are tried.
+const PLACEMENTS: usize = 8;
+
+/// Where the middle of a hand is ahead of its wrist, and how far from there a ball reaches that holds it
+/// in any posture, both as shares of its length.
+const MIDDLE: f64 = 0.42;
+const REACH: f64 = 0.75;
+
+/// How far behind the wrist an arm is taken to be known, as a share of the hand's length: half a palm's
+/// width. Further back arms differ more from the mean arm, and end in sleeves.
+const KNOWN_ARM: f64 = 0.2;
+
+/// The ball that holds a hand of some length.
+pub(super) fn ball_of(wrist: DVec3, arm: DVec3, length: f64) -> Ball {
+    Ball { middle: wrist + arm * (MIDDLE * length), radius: REACH * length }
+}
+
+/// The arm of a hand of some length as far as it is known.
+pub(super) fn arm_of(wrist: DVec3, arm: DVec3, length: f64) -> Arm {
+    Arm { cut: wrist - arm * (KNOWN_ARM * length), direction: arm }
+}
+
+/// How long a hand is from the wrist to the middle finger's tip, mm.
+pub(super) fn length_mm(hand: &HandShape) -> f64 {
+    let joints = hand.pose(&Pose::REST, &DAffine3::IDENTITY).joints;
+    joints[12].distance(joints[0])
+}
+
+/// The hand with as much of its forearm as is known, and half its width more.
+pub(super) fn fitted_hand(hand: &HandShape) -> HandShape {
+    let mut fitted = hand.clone();
+    let half_width = hand.forearm.half_widths_mm[0];
+    fitted.forearm.length_mm = KNOWN_ARM * length_mm(hand) + half_width;
+    fitted
+}
+
+/// A frame in which hands were looked for.
+pub(super) struct Sight {
+    views: Vec<View>,
+    detections: Vec<Detections>,
+    pub(super) placements: Vec<Placement>,
+}
+
+/// One camera's part of a frame.
+struct View {
+    finder: HandFinder,
+    is_empty: bool,
+}
+
+impl Sight {
+    /// Looks for hands in the masks of a frame, one for each camera, of any size.
+    ///
+    /// # Errors
+    /// Another number of masks than cameras.
+    pub(super) fn of(cameras: &[Camera], masks: &[Option<GrayImage>]) -> Result<Self> {
+        if masks.len() != cameras.len() {
+            let cameras = cameras.iter().map(|camera| camera.name.clone()).collect();
+            return Err(Error::PictureCount { cameras, found: masks.len() });
+        }
+        let (mut views, mut detections) = (Vec::new(), Vec::new());
+        for (camera, mask) in cameras.iter().zip(masks) {
+            let mut finder = HandFinder::default();
+            let found = match mask {
+                Some(mask) => Detections::find(camera, mask, &mut finder),
+                None => Detections::none(camera),
+            };
+            views.push(View { finder, is_empty: found.hands.is_empty() });
+            detections.push(found);
+        }
+        let placements = associate(&detections, PLACEMENTS);
+        Ok(Self { views, detections, placements })
+    }
+
+    /// What each view sees of a ball in space; `None` of a view without anything like a hand, or for
+    /// which the ball is not before the camera.
+    pub(super) fn crops(&self, ball: Ball) -> Vec<Option<HandCrop>> {
+        let views = self.views.iter().zip(&self.detections);
+        views.map(|(view, detections)| view.crop(detections, ball)).collect()
+    }
+}
+
+impl View {
+    /// What is seen of the ball: the component that fills most of it, and those that lie mostly within.
+    fn crop(&self, detections: &Detections, ball: Ball) -> Option<HandCrop> {
+        if self.is_empty {
+            return None;
+        }
+        let mut parts: Vec<&LocatedHand> = Vec::new();
+        for hand in &detections.hands {
+            if parts.iter().all(|part| part.component != hand.component) {
+                parts.push(hand);
+            }
+        }
+        let crop = |part: &LocatedHand| -> Option<(u32, bool, HandCrop)> {
+            let mask = self.finder.isolate(part);
+            let crop = HandCrop::onto(&detections.camera, &mask, ball).ok()?;
+            Some((crop.filled(), crop.holds_most_of(&mask), crop))
+        };
+        let mut crops: Vec<(u32, bool, HandCrop)> = parts.into_iter().filter_map(crop).collect();
+        crops.sort_by_key(|(filled, ..)| std::cmp::Reverse(*filled));
+        let mut crops = crops.into_iter();
+        let (filled, _, mut whole) = crops.next()?;
+        crops.filter(|(_, is_within, _)| *is_within).for_each(|(.., part)| whole.add(&part));
+        (filled > 0).then_some(whole)
+    }
+}

@@ -1,0 +1,82 @@
+//! The hand's proportions, from a take.
+
+use glam::DAffine3;
+use phalanx_hand::HandShape;
+use phalanx_refine::{Calibration, CalibrationFrame, HandDoubt};
+use rayon::prelude::*;
+
+use super::consensus::evenly;
+use super::frame_fit::{Found, FrameFitter};
+use crate::Result;
+
+/// Frames that the hand is learnt from, and as many that it is tested on.
+const LEARNT_FROM: usize = 16;
+
+/// How far hands differ from the mean adult's: the logarithm of the size so that hands of 130 to 215 mm
+/// are within two deviations of their middle, and of every bone and radius by some per cent.
+pub(super) const POPULATION: HandDoubt = HandDoubt { size: 0.126, each: 0.06 };
+
+/// A hand, and how well each of its proportions is known (standard deviations of logarithms).
+#[derive(Debug, Clone)]
+pub(super) struct KnownHand {
+    pub(super) shape: HandShape,
+    pub(super) std: Vec<f64>,
+}
+
+impl KnownHand {
+    /// A hand of which no more is known than that it is somebody's.
+    pub(super) fn anyone(shape: &HandShape) -> Self {
+        let mut std = vec![POPULATION.size];
+        let _unchanged = shape.varied(|| {
+            std.push(POPULATION.each);
+            1.0
+        });
+        Self { shape: shape.clone(), std }
+    }
+}
+
+/// The hand learnt from half of some frames, beginning with the mean hand, if frames of the other half
+/// then fit better than with the hand that they were fitted with; else `None`.
+pub(super) fn learn(
+    mean: &HandShape,
+    fitter: &FrameFitter<'_>,
+    found: &[Option<Found>],
+    rest: &DAffine3,
+) -> Result<Option<KnownHand>> {
+    let found: Vec<&Found> = found.iter().flatten().collect();
+    let frame = |found: &Found| {
+        let frame = found.frame(fitter.hand);
+        let evidence = fitter.evidence(&found.crops, &found.left_out, &frame);
+        let start = found.pose_in(rest, fitter.hand);
+        CalibrationFrame { evidence, start, prior: fitter.prior.clone() }
+    };
+    let chosen = evenly(found.len(), 2 * LEARNT_FROM);
+    let frames = chosen.iter().map(|&k| frame(found[k]));
+    let frames = frames.filter(|frame| !frame.evidence.is_empty());
+    let (seen, held) = alternating(frames);
+    if held.is_empty() {
+        return Ok(None);
+    }
+    let refinement = fitter.refinement.clone();
+    let calibration = Calibration { refinement, hand: POPULATION, cameras: None };
+    let calibrated = calibration.run(mean, rest, &seen)?;
+    let energy = |hand: &HandShape| -> Result<f64> {
+        let of_frame = |frame: &CalibrationFrame| -> Result<f64> {
+            let CalibrationFrame { evidence, start, prior } = frame;
+            Ok(fitter.refinement.run(hand, rest, evidence, start, prior)?.energy)
+        };
+        let energies: Vec<f64> = held.par_iter().map(of_frame).collect::<Result<_>>()?;
+        Ok(energies.iter().sum())
+    };
+    let fits_better = energy(&calibrated.hand)? < energy(fitter.hand)?;
+    Ok(fits_better.then_some(KnownHand { shape: calibrated.hand, std: calibrated.hand_std }))
+}
+
+/// Every other item, and those between.
+fn alternating<T>(items: impl Iterator<Item = T>) -> (Vec<T>, Vec<T>) {
+    let (mut one, mut other) = (Vec::new(), Vec::new());
+    for (k, item) in items.enumerate() {
+        if k % 2 == 0 { one.push(item) } else { other.push(item) }
+    }
+    (one, other)
+}

@@ -1,0 +1,136 @@
+//! Where fits begin.
+
+use glam::{DAffine3, DMat3, DVec3};
+use phalanx_hand::{Digit, Dof, HandShape, Pose, Side, coupled_pose};
+use phalanx_refine::PosePrior;
+
+use crate::localize::Placement;
+use crate::{ItemRandom, Result};
+
+/// Poses from the coupled prior that tell how angles go together.
+const POSTURES: u64 = 2000;
+
+/// Standard deviations of what is not known at all: any turn, anywhere before the cameras.
+const ANY_TURN: f64 = 10.0;
+const ANYWHERE_MM: f64 = 1e4;
+
+/// How many standard deviations a joint's plausible range is wide.
+const RANGE: f64 = 6.0;
+
+/// What is known of any hand's pose: how its fingers' angles go together, how far wrists bend, and
+/// nothing of where it is.
+pub(super) fn pose_prior() -> Result<PosePrior> {
+    let pose = |item| {
+        let mut random = ItemRandom::new(0, item);
+        coupled_pose(|| random.uniform())
+    };
+    let postures: Vec<Pose> = (0..POSTURES).map(pose).collect();
+    let mut deviations = [f64::INFINITY; Dof::COUNT];
+    for dof in [Dof::WristFlexion, Dof::WristDeviation] {
+        let (low, high) = dof.range();
+        deviations[dof.index()] = (high - low) / RANGE;
+    }
+    for dof in [Dof::ThetaX, Dof::ThetaY, Dof::ThetaZ] {
+        deviations[dof.index()] = ANY_TURN;
+    }
+    for dof in [Dof::TX, Dof::TY, Dof::TZ] {
+        deviations[dof.index()] = ANYWHERE_MM;
+    }
+    Ok(PosePrior::independent(Pose::REST, &deviations)?.and(&PosePrior::of_poses(&postures)?)?)
+}
+
+/// How a folded finger's four angles are, degrees.
+const FOLDED_DEG: [f64; 4] = [0.0, 60.0, 85.0, 50.0];
+
+/// A pose with every finger either straight or folded into the palm, in all combinations.
+pub(super) fn postures(pose: &Pose) -> Vec<Pose> {
+    (0..1 << Digit::FINGERS.len()).map(|folded| posture(pose, folded)).collect()
+}
+
+/// The open hand, and the fist.
+pub(super) fn extremes(pose: &Pose) -> [Pose; 2] {
+    [posture(pose, 0), posture(pose, (1 << Digit::FINGERS.len()) - 1)]
+}
+
+/// A pose with some fingers folded, a bit each, and the others straight.
+fn posture(pose: &Pose, folded: usize) -> Pose {
+    let mut pose = *pose;
+    for (k, finger) in Digit::FINGERS.into_iter().enumerate() {
+        let share = f64::from(u8::from(folded >> k & 1 == 1));
+        for (dof, degrees) in finger.dofs().into_iter().zip(FOLDED_DEG) {
+            pose[dof] = (share * degrees).to_radians();
+        }
+    }
+    pose
+}
+
+/// The frame of a hand at rest whose wrist and arm are where they are, its back in any direction.
+pub(super) fn frame_of(wrist: DVec3, arm: DVec3) -> DAffine3 {
+    let z = arm.normalize_or(DVec3::Z);
+    let x = z.any_orthonormal_vector();
+    DAffine3::from_mat3_translation(DMat3::from_cols(x, z.cross(x), z), wrist)
+}
+
+/// The frame of a posed hand: its origin at the wrist, z along the forearm towards the hand. With it for
+/// the frame at rest, the same hand is at [`Pose::REST`] but for its joints.
+pub(super) fn frame_at(pose: &Pose, rest: &DAffine3, hand: &HandShape) -> DAffine3 {
+    let mirror = mirror(hand);
+    let turn = mirror * pose.rotation() * mirror;
+    DAffine3::from_mat3_translation(rest.matrix3 * turn, rest.transform_point3(pose.translation()))
+}
+
+/// A frame at a placement: its arm as seen, its back as nearly as it can be as another frame's.
+pub(super) fn turned_to(placement: &Placement, frame: &DAffine3) -> DAffine3 {
+    let z = placement.arm.normalize_or(DVec3::Z);
+    let x = frame.matrix3.y_axis.cross(z).normalize_or(z.any_orthonormal_vector());
+    DAffine3::from_mat3_translation(DMat3::from_cols(x, z.cross(x), z), placement.wrist)
+}
+
+fn mirror(hand: &HandShape) -> DMat3 {
+    match hand.side {
+        Side::Right => DMat3::IDENTITY,
+        Side::Left => DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0)),
+    }
+}
+
+/// The same pose of a hand with another frame at rest: `to` in place of `from`.
+pub(super) fn in_frame(pose: &Pose, from: &DAffine3, to: &DAffine3, hand: &HandShape) -> Pose {
+    let mirror = mirror(hand);
+    let change = to.inverse() * *from;
+    let rotation = mirror * change.matrix3 * mirror * pose.rotation();
+    let offset = change.transform_point3(pose.translation());
+    let mut moved = *pose;
+    // R_X R_Y R_Z, as of `Pose::rotation`.
+    moved[Dof::ThetaX] = (-rotation.z_axis.y).atan2(rotation.z_axis.z);
+    moved[Dof::ThetaY] = rotation.z_axis.x.clamp(-1.0, 1.0).asin();
+    moved[Dof::ThetaZ] = (-rotation.y_axis.x).atan2(rotation.x_axis.x);
+    [moved[Dof::TX], moved[Dof::TY], moved[Dof::TZ]] = offset.to_array();
+    moved
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_hand_stays_where_it_is_in_another_frame(
+            numbers in prop::array::uniform28(-0.7..0.7_f64),
+            wrist in prop::array::uniform3(-300.0..300.0_f64),
+            arm in prop::array::uniform3(0.1..1.0_f64),
+            is_left in any::<bool>(),
+        ) {
+            let side = if is_left { Side::Left } else { Side::Right };
+            let hand = HandShape { side, ..HandShape::adult() };
+            let (from, to) = (DAffine3::IDENTITY, frame_of(wrist.into(), arm.into()));
+            let pose = Pose(numbers);
+            let moved = in_frame(&pose, &from, &to, &hand);
+            let (before, after) = (hand.pose(&pose, &from), hand.pose(&moved, &to));
+            for (a, b) in before.joints.iter().zip(after.joints) {
+                prop_assert!(a.distance(b) < 1e-6, "{a} is not {b}");
+            }
+        }
+    }
+}

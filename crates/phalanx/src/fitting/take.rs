@@ -1,0 +1,217 @@
+//! Whole takes: the hand first, then all frames, each in the light of its neighbours.
+
+use glam::DAffine3;
+use image::GrayImage;
+use phalanx_camera::{Camera, Volume};
+use phalanx_hand::HandShape;
+use phalanx_refine::{PosePrior, Refinement};
+use rayon::prelude::*;
+
+use super::borders;
+use super::consensus::{self, VolumeEstimate};
+use super::frame_fit::{Found, FrameFitter, Postures};
+use super::observation::{Sight, fitted_hand};
+use super::passes;
+use super::proportions::{self, KnownHand};
+use super::report::{FrameFit, Reporter};
+use super::starts;
+use super::views::{self, Usual};
+use crate::{Error, Progress, Result};
+
+/// What each camera saw at one time: masks in which hand is over 127, each a scaled copy of its camera's
+/// image; `None` of a camera that has none.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TakeFrame {
+    /// One for each camera.
+    pub masks: Vec<Option<GrayImage>>,
+}
+
+/// How takes are fitted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TakeSettings {
+    /// The hand, which may be a mean one, and its side.
+    pub hand: HandShape,
+    /// Whether the hand is that person's.
+    pub proportions: Proportions,
+}
+
+/// Where a hand's proportions come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Proportions {
+    /// They are fitted to the take, and kept if frames that they were not fitted to fit better.
+    FromTake,
+    /// They are given.
+    Given,
+}
+
+impl Default for TakeSettings {
+    /// A right hand like any other.
+    fn default() -> Self {
+        Self { hand: HandShape::adult(), proportions: Proportions::FromTake }
+    }
+}
+
+/// A fitted take.
+#[derive(Debug, Clone)]
+pub struct TakeFit {
+    /// The person's hand.
+    pub hand: HandShape,
+    /// Where it works; poses are said in [`Volume::rest_frame`].
+    pub volume: VolumeEstimate,
+    /// Frame by frame.
+    pub frames: Vec<FrameFit>,
+    known: Known,
+}
+
+/// What a take tells of its hand and its cameras, besides poses.
+#[derive(Debug, Clone)]
+struct Known {
+    hand: KnownHand,
+    /// How much each view's border counts.
+    weights: Vec<f64>,
+    usual: Usual,
+}
+
+/// How often the hand is learnt, each time from frames fitted with it as it was before: a finger that was
+/// taken for another finds its place with a hand that fits.
+const ROUNDS: usize = 2;
+
+/// Fits a whole take: where the hand works, its proportions, and its pose in every frame.
+///
+/// Frames are in the order of time. Nothing else is needed; the same frames give the same fit, at any
+/// number of threads.
+///
+/// # Errors
+/// Frames with another number of masks than cameras, or no frame in which any camera sees a hand.
+pub fn fit_take(
+    cameras: &[Camera],
+    frames: &[TakeFrame],
+    settings: &TakeSettings,
+    progress: &dyn Progress,
+) -> Result<TakeFit> {
+    let (prior, refinement) = (starts::pose_prior()?, consensus::refinement());
+    let mut take = Take::of(cameras, &settings.hand, &prior, &refinement);
+    let keys = consensus::key_frames(cameras, frames, &take.fitter(Weights::Relative), progress)?;
+    let middle = consensus::agreed(&keys, &take.hand.shape)?;
+    let found =
+        passes::first(cameras, frames, &take.fitter(Weights::Relative), &[middle], progress)?;
+    let found = passes::again(&take.fitter(Weights::Relative), &found, Postures::All, progress)?;
+    let (_, mut found) = passes::agreeing(&take.fitter(Weights::Relative), &found, progress)?;
+    take.weigh(&found)?;
+    if settings.proportions == Proportions::FromTake {
+        for _ in 0..ROUNDS {
+            let fitter = take.fitter(Weights::Absolute);
+            let learnt = proportions::learn(&take.mean, &fitter, &found, &middle)?;
+            let Some(learnt) = learnt else { break };
+            take.hand = learnt;
+            let fitter = take.fitter(Weights::Relative);
+            found = passes::again(&fitter, &found, Postures::All, progress)?;
+            take.weigh(&found)?;
+        }
+    }
+    let fitter = take.fitter(Weights::Relative);
+    let found = passes::again(&fitter, &found, Postures::Given, progress)?;
+    let (usual, found) = passes::agreeing(&fitter, &found, progress)?;
+    take.weigh(&found)?;
+    let volume = VolumeEstimate::around(&middle, found.iter().flatten(), &take.hand.shape);
+    let frames = take.reports(&found, &volume.volume, usual)?;
+    let forearm = settings.hand.forearm.clone();
+    let hand = HandShape { forearm, ..take.hand.shape.clone() };
+    let known = Known { hand: take.hand, weights: take.weights, usual };
+    Ok(TakeFit { hand, volume, frames, known })
+}
+
+/// Fits one frame of a hand that a take was fitted to, before the same cameras.
+///
+/// # Errors
+/// Another number of masks than cameras, or no camera that sees a hand.
+pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Result<FrameFit> {
+    let (prior, refinement) = (starts::pose_prior()?, consensus::refinement());
+    let Known { hand, weights, usual } = &take.known;
+    let fitter = |weights| FrameFitter {
+        hand: &hand.shape,
+        prior: &prior,
+        refinement: &refinement,
+        weights,
+    };
+    let relative = fitter(borders::relative(weights));
+    let rest = take.volume.volume.rest_frame();
+    let sight = Sight::of(cameras, &frame.masks)?;
+    let found = relative.search_near(&sight, &[rest])?.ok_or(Error::NoHand)?;
+    let again = relative.again(&found, &found.left_out, &[], Postures::All)?;
+    let found = views::without_disagreeing(&relative, &again.unwrap_or(found), *usual)?;
+    let fitter = &fitter(weights.clone());
+    Reporter { cameras, fitter, hand, rest, usual: *usual }.report(&found)
+}
+
+/// A take that is being fitted.
+struct Take<'a> {
+    cameras: &'a [Camera],
+    prior: &'a PosePrior,
+    refinement: &'a Refinement,
+    mean: HandShape,
+    hand: KnownHand,
+    weights: Vec<f64>,
+}
+
+/// Which weights views are fitted with.
+#[derive(Clone, Copy)]
+enum Weights {
+    /// As their borders are known.
+    Absolute,
+    /// The same beside the best view's.
+    Relative,
+}
+
+impl<'a> Take<'a> {
+    fn of(
+        cameras: &'a [Camera],
+        hand: &HandShape,
+        prior: &'a PosePrior,
+        refinement: &'a Refinement,
+    ) -> Self {
+        let mean = fitted_hand(hand);
+        let hand = KnownHand::anyone(&mean);
+        Self { cameras, prior, refinement, mean, hand, weights: vec![1.0; cameras.len()] }
+    }
+
+    fn fitter(&self, weights: Weights) -> FrameFitter<'_> {
+        let weights = match weights {
+            Weights::Absolute => self.weights.clone(),
+            Weights::Relative => borders::relative(&self.weights),
+        };
+        let Self { prior, refinement, hand, .. } = self;
+        FrameFitter { hand: &hand.shape, prior, refinement, weights }
+    }
+
+    /// Finds out how well borders are known.
+    fn weigh(&mut self, found: &[Option<Found>]) -> Result<()> {
+        let borders = borders::border_noise(&self.fitter(Weights::Absolute), found)?;
+        self.weights = borders::weights(&borders, self.refinement.noise);
+        Ok(())
+    }
+
+    /// The report of every frame.
+    fn reports(
+        &self,
+        found: &[Option<Found>],
+        volume: &Volume,
+        usual: Usual,
+    ) -> Result<Vec<FrameFit>> {
+        let rest: DAffine3 = volume.rest_frame();
+        let fitter = &self.fitter(Weights::Absolute);
+        let reporter = Reporter { cameras: self.cameras, fitter, hand: &self.hand, rest, usual };
+        let report =
+            |found: &Option<Found>| found.as_ref().map(|own| reporter.report(own)).transpose();
+        let seen: Vec<Option<FrameFit>> = found.par_iter().map(report).collect::<Result<_>>()?;
+        let fill = |k: usize| -> Result<FrameFit> {
+            if let Some(seen) = &seen[k] {
+                return Ok(seen.clone());
+            }
+            let fitted = (0..seen.len()).filter_map(|other| Some((other, seen[other].as_ref()?)));
+            let nearest = fitted.min_by_key(|(other, _)| other.abs_diff(k));
+            Ok(reporter.not_seen(nearest.ok_or(Error::NoHand)?.1))
+        };
+        (0..seen.len()).map(fill).collect()
+    }
+}

@@ -1,0 +1,99 @@
+//! What a camera sees of a hand in space.
+
+use glam::{DVec2, DVec3};
+use image::GrayImage;
+use phalanx_camera::{Camera, Intrinsics, PixelMap};
+use phalanx_refine::Evidence;
+
+use super::arm::Arm;
+use crate::window::resample;
+use crate::{Error, Result};
+
+/// Side of a crop, px: with [`REACH`] a pixel is about two millimetres of an adult's hand, a quarter of
+/// a finger.
+const SIDE: u32 = 128;
+
+/// Least of the depth of a hand's middle that is in front of it: a camera within the hand sees nothing.
+const NEAREST: f64 = 1.05;
+
+/// A ball that a hand fits into.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ball {
+    /// Its middle, mm in the world.
+    pub middle: DVec3,
+    /// Its radius, mm.
+    pub radius: f64,
+}
+
+/// A camera's mask seen through a virtual camera at the same place, turned and zoomed onto a ball in
+/// space: also where the camera itself found no hand.
+#[derive(Debug, Clone)]
+pub struct HandCrop {
+    /// The virtual camera, square.
+    pub camera: Camera,
+    /// 255 where the mask covers at least half of a pixel.
+    pub mask: GrayImage,
+    /// 255 where the picture reaches.
+    inside: GrayImage,
+    /// How many of the picture's pixels one of the crop's is wide.
+    grain: f64,
+}
+
+impl HandCrop {
+    /// A crop of a mask that `camera` sees, whose image must be as large as the mask.
+    ///
+    /// # Errors
+    /// A ball that is not before the camera.
+    pub fn onto(camera: &Camera, mask: &GrayImage, ball: Ball) -> Result<Self> {
+        let offset = ball.middle - camera.centre();
+        let in_camera = camera.extrinsics.to_camera(ball.middle);
+        if in_camera.z <= 0.0 {
+            return Err(Error::BehindCamera { camera: camera.name.clone() });
+        }
+        let distance = offset.length().max(NEAREST * ball.radius);
+        let tangent = ball.radius / (distance.powi(2) - ball.radius.powi(2)).sqrt();
+        let focal = f64::from(SIDE) / 2.0 / tangent;
+        let right = camera.extrinsics.rotation.row(0);
+        let virtual_camera =
+            camera.turned(offset, right, Intrinsics::pinhole(SIDE, SIDE, focal))?;
+        let to_picture = PixelMap::between(&virtual_camera, camera);
+        let size = (SIDE, SIDE);
+        let mut seen = GrayImage::new(SIDE, SIDE);
+        resample::resample(mask, &to_picture, &mut seen);
+        Ok(Self {
+            inside: resample::inside(&to_picture, size, mask.dimensions()),
+            grain: resample::pixels_aside(&to_picture, size),
+            camera: virtual_camera,
+            mask: seen,
+        })
+    }
+
+    /// How many of the crop's pixels the mask fills.
+    pub(crate) fn filled(&self) -> u32 {
+        self.mask.iter().map(|&pixel| u32::from(pixel > 127)).sum()
+    }
+
+    /// Whether the ball holds most of a mask of the picture.
+    pub(crate) fn holds_most_of(&self, mask: &GrayImage) -> bool {
+        let all = mask.iter().filter(|&&pixel| pixel > 127).count() as f64;
+        f64::from(self.filled()) * self.grain * self.grain > 0.5 * all
+    }
+
+    /// Adds what another crop onto the same ball sees.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.mask.iter_mut().zip(other.mask.iter()).for_each(|(own, other)| *own |= other);
+    }
+
+    /// What it tells of a hand whose arm is known no further than said.
+    ///
+    /// # Errors
+    /// A mask without a border that is known.
+    pub fn evidence(&self, arm: &Arm) -> Result<Evidence> {
+        let covered = arm.seen_by(&self.camera);
+        let known = |at: DVec2| {
+            self.inside.get_pixel(at.x as u32, at.y as u32).0[0] > 127 && !covered.covers(at)
+        };
+        let evidence = Evidence::within(&self.camera, &self.mask, known)?;
+        Ok(evidence.resampled(1.0 / self.grain))
+    }
+}

@@ -1,0 +1,50 @@
+//! What may be a hand in one camera's mask.
+
+use glam::{DVec2, DVec3};
+use image::GrayImage;
+use phalanx_camera::Camera;
+use phalanx_segmentation::{Cleanup, HandFinder, LocatedHand, WristModel};
+
+/// What may be a hand in one picture. All pixels are those of `camera`, which is the camera resized to
+/// the picture, so that they cannot be taken for those of a picture of another size.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Detections {
+    /// The camera, its image as large as the picture that was looked at.
+    pub camera: Camera,
+    /// The candidates, the likeliest first; none where nothing is as large as a hand.
+    pub hands: Vec<LocatedHand>,
+    /// The picture's mask: hand is over 127.
+    mask: GrayImage,
+}
+
+/// The candidates of a view that are considered. Three wrists along an arm from either of its ends
+/// are six.
+const MOST: usize = 6;
+
+impl Detections {
+    /// Looks for hands in a camera's mask of any size.
+    pub fn find(camera: &Camera, mask: &GrayImage, finder: &mut HandFinder) -> Self {
+        let (width, height) = mask.dimensions();
+        let camera = camera.with_intrinsics(camera.intrinsics.resized(width, height));
+        // What is no hand is an answer here, not an error: other views may see one.
+        let found = finder.find(mask, &Cleanup::default(), WristModel::builtin());
+        let mut hands = found.unwrap_or_default();
+        hands.truncate(MOST);
+        Self { camera, hands, mask: mask.clone() }
+    }
+
+    /// Those of a camera that saw nothing.
+    pub fn none(camera: &Camera) -> Self {
+        Self { camera: camera.clone(), hands: Vec::new(), mask: GrayImage::default() }
+    }
+
+    /// Whether a point of the world is seen within the mask.
+    pub(super) fn covers(&self, point: DVec3) -> bool {
+        let Some(pixel) = self.camera.project(point) else { return false };
+        let (width, height) = self.mask.dimensions();
+        let is_inside = pixel.cmpge(DVec2::ZERO).all()
+            && pixel.x < f64::from(width)
+            && pixel.y < f64::from(height);
+        is_inside && self.mask.get_pixel(pixel.x as u32, pixel.y as u32).0[0] > 127
+    }
+}

@@ -1,0 +1,11 @@
+//! Where the hand is in space, from what all cameras see.
+
+mod arm;
+mod associate;
+mod crop;
+mod detect;
+
+pub use arm::Arm;
+pub use associate::{Placement, associate};
+pub use crop::{Ball, HandCrop};
+pub use detect::Detections;

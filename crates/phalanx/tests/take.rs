@@ -1,0 +1,120 @@
+//! Whole takes of drawn hands, from masks and cameras alone.
+
+use glam::{DAffine3, DVec3};
+use image::GrayImage;
+use phalanx::{
+    Error, ItemRandom, Missing, Silent, TakeFrame, TakeSettings, estimate_volume, fit_frame, fit_take,
+};
+use phalanx_camera::{Camera, Intrinsics, Rig};
+use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
+use phalanx_render::Renderer;
+
+/// A drawn take: cameras on three sides of a desk, and a hand that is no mean one.
+struct Drawn {
+    cameras: Vec<Camera>,
+    frames: Vec<TakeFrame>,
+    joints: Vec<[DVec3; JOINTS]>,
+}
+
+/// The desk's cameras, with pictures that a hand is small in.
+fn cameras() -> Vec<Camera> {
+    let rig = Rig::from_toml(include_str!("../fixtures/desk.toml")).expect("a rig");
+    let wide = |camera: &Camera| {
+        let Intrinsics { fx, .. } = camera.intrinsics;
+        camera.with_intrinsics(Intrinsics::pinhole(320, 240, 1.6 * fx))
+    };
+    rig.cameras.iter().map(wide).collect()
+}
+
+/// Someone's hand: 6 % longer than the mean one, its bones up to 4 % more or less.
+fn hand() -> HandShape {
+    let mut random = ItemRandom::new(5, 0);
+    HandShape::adult().varied(|| 1.06 * random.between(0.96, 1.04))
+}
+
+/// Fingers that open and close in turn while the hand turns a little.
+fn pose(frame: usize) -> Pose {
+    let mut pose = Pose::REST;
+    let at = frame as f64;
+    for (k, finger) in Digit::FINGERS.into_iter().enumerate() {
+        let bent = 0.5 - 0.5 * (0.8 * at + 1.5 * k as f64).cos();
+        let angles = [0.0, 0.9 * bent, 1.3 * bent, 0.8 * bent];
+        finger.dofs().into_iter().zip(angles).for_each(|(dof, angle)| pose[dof] = angle);
+    }
+    pose[Dof::ThetaX] = 0.15 * (0.5 * at).sin();
+    pose[Dof::ThetaZ] = 0.6 + 0.3 * (0.4 * at).cos();
+    [pose[Dof::TX], pose[Dof::TY], pose[Dof::TZ]] = [4.0 * at, 3.0 * (0.7 * at).sin(), -10.0];
+    pose
+}
+
+fn drawn(count: usize) -> Drawn {
+    let (cameras, hand, rest) = (cameras(), hand(), DAffine3::IDENTITY);
+    let mut renderers: Vec<Renderer> =
+        cameras.iter().map(|camera| Renderer::new(camera).expect("a camera")).collect();
+    let (mut frames, mut joints) = (Vec::new(), Vec::new());
+    for frame in 0..count {
+        let posed = hand.pose(&pose(frame), &rest);
+        let mut mask = |renderer: &mut Renderer| {
+            Some(renderer.silhouette(&posed.primitives).expect("a hand before the camera"))
+        };
+        frames.push(TakeFrame { masks: renderers.iter_mut().map(&mut mask).collect() });
+        joints.push(posed.joints);
+    }
+    Drawn { cameras, frames, joints }
+}
+
+fn mean_error(found: &[DVec3; JOINTS], truth: &[DVec3; JOINTS]) -> f64 {
+    found.iter().zip(truth).map(|(a, b)| a.distance(*b)).sum::<f64>() / JOINTS as f64
+}
+
+#[test]
+fn a_take_is_fitted_from_masks_alone() {
+    let Drawn { cameras, frames, joints } = drawn(10);
+    let settings = TakeSettings::default();
+    let fit = fit_take(&cameras, &frames, &settings, &Silent).expect("a fit");
+    let errors: Vec<f64> =
+        fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    assert!(mean < 6.0, "{errors:.1?}");
+    for fit in &fit.frames {
+        assert!(fit.views.iter().all(|view| view.missing.is_none()), "{:?}", fit.views);
+        assert!(fit.joint_std.iter().all(|std| (0.1..60.0).contains(std)), "{:?}", fit.joint_std);
+    }
+    // Wherever it was thought to be, the arm is along +z and the hand near the world's origin.
+    assert!(fit.volume.volume.forearm.normalize().z > 0.95, "{:?}", fit.volume);
+    assert!(fit.volume.volume.center.distance(DVec3::new(18.0, 0.0, -10.0)) < 25.0);
+    let alone = fit_frame(&cameras, &frames[3], &fit).expect("a fit");
+    assert!(mean_error(&alone.joints, &joints[3]) < 8.0, "a frame alone");
+}
+
+#[test]
+fn a_view_that_shows_something_else_is_named_and_does_no_harm() {
+    let Drawn { cameras, mut frames, joints } = drawn(8);
+    for frame in &mut frames {
+        // A face that joins the hand.
+        let mask = frame.masks[1].as_mut().expect("drawn");
+        let face = |x: u32, y: u32| {
+            let (dx, dy) = (f64::from(x) - 200.0, f64::from(y) - 60.0);
+            (dx / 55.0).powi(2) + (dy / 70.0).powi(2) < 1.0
+        };
+        let both = |x, y| if face(x, y) { [255] } else { mask.get_pixel(x, y).0 };
+        *mask = GrayImage::from_fn(320, 240, |x, y| image::Luma(both(x, y)));
+    }
+    let fit = fit_take(&cameras, &frames, &TakeSettings::default(), &Silent).expect("a fit");
+    let named = fit.frames.iter().filter(|fit| fit.views[1].missing == Some(Missing::Disagrees));
+    assert!(named.count() >= 6, "{:?}", fit.frames.iter().map(|fit| &fit.views).collect::<Vec<_>>());
+    let errors: Vec<f64> =
+        fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
+    assert!(errors.iter().sum::<f64>() / 8.0 < 12.0, "{errors:.1?}");
+}
+
+#[test]
+fn a_take_without_a_hand_is_an_error() {
+    let cameras = cameras();
+    let nothing = TakeFrame { masks: vec![Some(GrayImage::new(320, 240)), None, None] };
+    let fit = fit_take(&cameras, &[nothing], &TakeSettings::default(), &Silent);
+    assert!(matches!(fit, Err(Error::NoHand)));
+    let short = TakeFrame { masks: vec![None] };
+    let volume = estimate_volume(&cameras, &[short], &HandShape::adult());
+    assert!(matches!(volume, Err(Error::PictureCount { .. })));
+}

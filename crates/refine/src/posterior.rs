@@ -1,0 +1,120 @@
+//! How well a fitted pose is known, the hand being known only so well.
+
+use faer::linalg::solvers::DenseSolveCore;
+use faer::{Mat, Side};
+use glam::{DAffine3, DVec3};
+use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
+
+use crate::doubt::HandDoubt;
+use crate::problem::{Frame, Freedom, Measure, Problem};
+use crate::proportions::Proportions;
+use crate::view::View;
+use crate::{Error, Evidence, PosePrior, Refinement, Result};
+
+/// How well a fitted hand is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Posterior {
+    /// Standard deviation of each number of the pose, in its unit; 0 of those that were given.
+    pub std: [f64; Dof::COUNT],
+    /// Root mean square distance of each joint from where it is said to be, mm.
+    pub joints: [f64; JOINTS],
+}
+
+impl Refinement {
+    /// The deviations of a fitted pose (Laplace's approximation): from the curvature of the energy in
+    /// pose and proportions together, where each proportion is known to a standard deviation of its
+    /// logarithm, the size's first ([`Calibrated::hand_std`](crate::Calibrated::hand_std)). They are
+    /// honest where the evidence is [weighted](Evidence::weighted) by how its borders err together.
+    ///
+    /// # Errors
+    /// No evidence, another number of proportions than the hand has, silhouettes that leave
+    /// directions open, or a hand that a camera cannot draw.
+    pub fn posterior(
+        &self,
+        hand: &HandShape,
+        rest: &DAffine3,
+        evidence: &[Evidence],
+        pose: &Pose,
+        prior: &PosePrior,
+        hand_std: &[f64],
+    ) -> Result<Posterior> {
+        self.check()?;
+        if evidence.is_empty() {
+            return Err(Error::NoEvidence);
+        }
+        let anything = HandDoubt { size: 1.0, each: 1.0 };
+        let problem = Problem {
+            given: hand,
+            rest,
+            frames: vec![Frame { evidence, prior }],
+            freedom: Freedom { hand: Some(anything), cameras: None },
+        };
+        let (moment, shared) = (problem.moment(0, pose), problem.shared());
+        let count = shared.proportions.logarithms.len();
+        if hand_std.len() != count {
+            let reason = format!("is of {} proportions, the hand has {count}", hand_std.len());
+            return Err(Error::Precision { reason });
+        }
+        let mut views = evidence.iter().map(View::new).collect::<Result<Vec<_>>>()?;
+        // Views that were fitted with are believed.
+        let measure = Measure { disagreement: f64::INFINITY, ..self.finest() };
+        let system = problem.look(0, &moment, &shared, measure, &mut views)?;
+        let mut hessian = system.whole_hessian();
+        let own = hessian.nrows() - count;
+        for (k, std) in hand_std.iter().enumerate() {
+            hessian[(own + k, own + k)] += std.max(LEAST_STD).powi(-2);
+        }
+        let open = || Error::Precision {
+            reason: "leaves directions open that the silhouettes do not tell".to_owned(),
+        };
+        let covariance = hessian.llt(Side::Lower).map_err(|_| open())?.inverse();
+        let dofs = prior.dofs();
+        let mut std = [0.0; Dof::COUNT];
+        for (k, dof) in dofs.iter().enumerate() {
+            std[dof.index()] = covariance[(k, k)].max(0.0).sqrt();
+        }
+        let slopes = joint_slopes(hand, rest, pose, dofs, &shared.proportions);
+        let unknowns: Vec<usize> = (0..dofs.len()).chain(own..own + count).collect();
+        Ok(Posterior { std, joints: spreads(&covariance, &unknowns, &slopes) })
+    }
+}
+
+/// A proportion is not known better than this, as a logarithm: a tenth of a per cent.
+const LEAST_STD: f64 = 1e-3;
+
+/// How each joint moves with each number of the pose and each proportion, by differences.
+fn joint_slopes(
+    hand: &HandShape,
+    rest: &DAffine3,
+    pose: &Pose,
+    dofs: &[Dof],
+    proportions: &Proportions,
+) -> Vec<[DVec3; JOINTS]> {
+    const STEP: f64 = 1e-5;
+    let at = hand.pose(pose, rest).joints;
+    let slope = |moved: [DVec3; JOINTS]| std::array::from_fn(|j| (moved[j] - at[j]) / STEP);
+    let of_pose = dofs.iter().map(|&dof| {
+        let mut moved = *pose;
+        moved[dof] += STEP;
+        slope(hand.pose(&moved, rest).joints)
+    });
+    let of_hand = (0..proportions.logarithms.len()).map(|number| {
+        let mut changed = proportions.clone();
+        changed.logarithms[number] += STEP;
+        slope(changed.hand(hand).pose(pose, rest).joints)
+    });
+    of_pose.chain(of_hand).collect()
+}
+
+/// The root of each joint's mean squared distance: of the trace of S C Sᵀ.
+fn spreads(covariance: &Mat<f64>, unknowns: &[usize], slopes: &[[DVec3; JOINTS]]) -> [f64; JOINTS] {
+    std::array::from_fn(|joint| {
+        let mut square = 0.0;
+        for (&i, one) in unknowns.iter().zip(slopes) {
+            for (&j, other) in unknowns.iter().zip(slopes) {
+                square += covariance[(i, j)] * one[joint].dot(other[joint]);
+            }
+        }
+        square.max(0.0).sqrt()
+    })
+}

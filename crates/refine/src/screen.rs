@@ -1,0 +1,73 @@
+//! Many starts, a few coarse steps each: which of them are worth a fit.
+
+use glam::DAffine3;
+use phalanx_hand::{HandShape, Pose};
+
+use crate::fit::{State, Stop, descend};
+use crate::problem::{Frame, Freedom, Problem};
+use crate::refinement::ANY_ENERGY;
+use crate::view::View;
+use crate::{Error, Evidence, Level, PosePrior, Refinement, Result};
+
+/// A start after a few coarse steps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Screened {
+    /// Where the steps led.
+    pub pose: Pose,
+    /// What speaks against the pose.
+    pub energy: f64,
+    /// For each view, how much of its border the pose leaves unexplained: the mean robust squared
+    /// distance over the most that it can be, 0 to 1.
+    pub unexplained: Vec<f64>,
+}
+
+impl Refinement {
+    /// Takes a few steps from each start at one level of detail, with hand and cameras as given, and
+    /// says how well each then fits. Energies of one call can be compared with each other.
+    ///
+    /// # Errors
+    /// As of [`run`](Self::run).
+    pub fn screen(
+        &self,
+        hand: &HandShape,
+        rest: &DAffine3,
+        evidence: &[Evidence],
+        starts: &[Pose],
+        prior: &PosePrior,
+        level: Level,
+    ) -> Result<Vec<Screened>> {
+        self.check()?;
+        hand.validate()?;
+        if evidence.is_empty() {
+            return Err(Error::NoEvidence);
+        }
+        let mut views = vec![evidence.iter().map(View::new).collect::<Result<Vec<_>>>()?];
+        let problem = Problem {
+            given: hand,
+            rest,
+            frames: vec![Frame { evidence, prior }],
+            freedom: Freedom::default(),
+        };
+        let measure = self.measure(&level);
+        let stop = Stop { steps: level.steps, gain: COARSE_GAIN, hope: ANY_ENERGY };
+        let mut screened = Vec::with_capacity(starts.len());
+        for start in starts {
+            let state = State { moments: vec![problem.moment(0, start)], shared: problem.shared() };
+            match descend(&problem, state, measure, stop, &mut views) {
+                Ok(outcome) => screened.push(Screened {
+                    pose: outcome.state.moments[0].pose,
+                    energy: outcome.energy,
+                    unexplained: outcome.unexplained(measure),
+                }),
+                // A start that a camera cannot draw leads nowhere.
+                Err(Error::Render { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(screened)
+    }
+}
+
+/// Share of the energy that a coarse step must win to be followed by another: starts that compete
+/// differ by more.
+const COARSE_GAIN: f64 = 0.02;
