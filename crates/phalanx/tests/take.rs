@@ -3,7 +3,8 @@
 use glam::{DAffine3, DVec3};
 use image::GrayImage;
 use phalanx::{
-    Error, ItemRandom, Missing, Silent, TakeFrame, TakeSettings, estimate_volume, fit_frame, fit_take,
+    Error, ItemRandom, Missing, Silent, TakeFrame, TakeSettings, estimate_volume, fit_frame,
+    fit_take,
 };
 use phalanx_camera::{Camera, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
@@ -69,7 +70,7 @@ fn mean_error(found: &[DVec3; JOINTS], truth: &[DVec3; JOINTS]) -> f64 {
 
 #[test]
 fn a_take_is_fitted_from_masks_alone() {
-    let Drawn { cameras, frames, joints } = drawn(10);
+    let Drawn { cameras, frames, joints } = drawn(6);
     let settings = TakeSettings::default();
     let fit = fit_take(&cameras, &frames, &settings, &Silent).expect("a fit");
     let errors: Vec<f64> =
@@ -89,23 +90,31 @@ fn a_take_is_fitted_from_masks_alone() {
 
 #[test]
 fn a_view_that_shows_something_else_is_named_and_does_no_harm() {
-    let Drawn { cameras, mut frames, joints } = drawn(8);
+    let Drawn { cameras, mut frames, joints } = drawn(5);
     for frame in &mut frames {
         // A face that joins the hand.
         let mask = frame.masks[1].as_mut().expect("drawn");
+        let hand = mask.enumerate_pixels().filter(|(.., level)| level.0[0] > 127);
+        let (x, y): (Vec<f64>, Vec<f64>) =
+            hand.map(|(x, y, _)| (f64::from(x), f64::from(y))).unzip();
+        let middle = [x, y].map(|all| all.iter().sum::<f64>() / all.len() as f64);
         let face = |x: u32, y: u32| {
-            let (dx, dy) = (f64::from(x) - 200.0, f64::from(y) - 60.0);
-            (dx / 55.0).powi(2) + (dy / 70.0).powi(2) < 1.0
+            let (dx, dy) = (f64::from(x) - middle[0], f64::from(y) - middle[1] + 40.0);
+            (dx / 35.0).powi(2) + (dy / 45.0).powi(2) < 1.0
         };
         let both = |x, y| if face(x, y) { [255] } else { mask.get_pixel(x, y).0 };
         *mask = GrayImage::from_fn(320, 240, |x, y| image::Luma(both(x, y)));
     }
     let fit = fit_take(&cameras, &frames, &TakeSettings::default(), &Silent).expect("a fit");
     let named = fit.frames.iter().filter(|fit| fit.views[1].missing == Some(Missing::Disagrees));
-    assert!(named.count() >= 6, "{:?}", fit.frames.iter().map(|fit| &fit.views).collect::<Vec<_>>());
+    assert!(
+        named.count() >= 4,
+        "{:?}",
+        fit.frames.iter().map(|fit| &fit.views).collect::<Vec<_>>()
+    );
     let errors: Vec<f64> =
         fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
-    assert!(errors.iter().sum::<f64>() / 8.0 < 12.0, "{errors:.1?}");
+    assert!(errors.iter().sum::<f64>() / 5.0 < 12.0, "{errors:.1?}");
 }
 
 #[test]

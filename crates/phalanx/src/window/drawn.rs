@@ -99,7 +99,8 @@ impl DrawnWindows {
     /// The mask of [`WORKING_SIZE`] that a window onto the picture of a camera shows.
     fn draw(&mut self, number: usize, window: &Window, view: &DrawnView) -> Result<GrayImage> {
         let camera = &self.cameras[number];
-        let aside = resample::pixels_aside(&PixelMap::between(&window.camera, camera));
+        let aside =
+            resample::pixels_aside(&PixelMap::between(&window.camera, camera), WORKING_SIZE);
         let aside = aside.min(MOST_PIXELS);
         let times = (f64::from(WORKING_SIZE.0 / SHAPE.0) * aside).round().max(1.0) as u32;
         let fine = window.camera.intrinsics.resized(SHAPE.0 * times, SHAPE.1 * times);
