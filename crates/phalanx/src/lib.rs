@@ -12,7 +12,6 @@ mod estimator;
 mod fitting;
 mod gathered;
 mod global_pose;
-mod histograms;
 mod hypotheses;
 mod localize;
 mod losses;
@@ -51,7 +50,6 @@ pub use fitting::{
     VolumeEstimate, estimate_volume, fit_frame, fit_take,
 };
 pub use global_pose::{GlobalStart, initial_global};
-pub use histograms::{ViewCodebooks, describe_with};
 pub use hypotheses::Hypothesis;
 pub use localize::{Arm, Ball, Detections, HandCrop, Placement, associate};
 pub use losses::{LossReason, Losses};

@@ -4,11 +4,12 @@ use std::fmt::Write;
 
 use anyhow::Result;
 use comfy_table::{Table, presets};
-use phalanx::{Progress, ViewCodebooks};
+use phalanx::Progress;
 use phalanx_multiview::Vocabulary;
 use serde::Serialize;
 
 use super::Ground;
+use super::histograms::ViewCodebooks;
 use super::learner::{Learner, codebooks, describe, pilot_contexts};
 use super::method::Method;
 use super::row::Row;

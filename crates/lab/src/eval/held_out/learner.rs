@@ -3,14 +3,14 @@
 use anyhow::{Context, Result};
 use faer::Mat;
 use phalanx::{
-    OrientationRule, PoseContexts, Progress, SceneSubset, Scenes, Training, ViewCodebooks,
-    describe_each, describe_with, targets,
+    OrientationRule, PoseContexts, Progress, SceneSubset, Scenes, Training, describe_each, targets,
 };
 use phalanx_hand::Pose;
 use phalanx_multiview::Vocabulary;
 use phalanx_shape_context::BINS;
 use rayon::prelude::*;
 
+use super::histograms::{ViewCodebooks, describe_with};
 use super::method::{Method, Predictor};
 use crate::data::described::Samples;
 use crate::data::sets::Set;

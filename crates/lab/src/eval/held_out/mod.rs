@@ -2,6 +2,7 @@
 
 mod curves;
 pub(crate) mod errors;
+mod histograms;
 pub(crate) mod learner;
 mod masks;
 pub(crate) mod method;

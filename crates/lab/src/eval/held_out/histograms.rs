@@ -1,18 +1,17 @@
 //! Scenes to descriptors, without keeping the shape contexts in between.
 
+use phalanx::{Error, Progress, Result, SceneDescriber, Scenes, Sight};
 use phalanx_camera::Rig;
 use phalanx_multiview::{Concatenation, Scratch};
 use rayon::prelude::*;
 
-use crate::{Error, Progress, Result, SceneDescriber, Scenes, Sight};
-
 /// Codebooks of some of a rig's cameras.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ViewCodebooks {
+pub(crate) struct ViewCodebooks {
     /// The cameras' numbers in the rig, in the order of the codebooks.
-    pub views: Vec<usize>,
+    pub(crate) views: Vec<usize>,
     /// Their codebooks.
-    pub codebooks: Concatenation,
+    pub(crate) codebooks: Concatenation,
 }
 
 impl ViewCodebooks {
@@ -20,7 +19,11 @@ impl ViewCodebooks {
     ///
     /// # Errors
     /// What the codebooks say of the contexts, or another number of cameras.
-    pub fn describe(&self, contexts: &[Vec<f32>], scratch: &mut Scratch) -> Result<Vec<f64>> {
+    pub(crate) fn describe(
+        &self,
+        contexts: &[Vec<f32>],
+        scratch: &mut Scratch,
+    ) -> Result<Vec<f64>> {
         let view = |&v: &usize| contexts.get(v).map(Vec::as_slice);
         let seen: Option<Vec<&[f32]>> = self.views.iter().map(view).collect();
         let expected = self.views.iter().max().map_or(0, |last| last + 1);
@@ -38,7 +41,7 @@ impl ViewCodebooks {
 ///
 /// # Errors
 /// A camera that cannot draw at all; of each scene, that a camera cannot see or describe it.
-pub fn describe_with(
+pub(crate) fn describe_with(
     rig: &Rig,
     scenes: &dyn Scenes,
     numbers: &[usize],
