@@ -30,6 +30,7 @@ mod random;
 mod refiner;
 mod regression;
 mod regressor;
+mod restarts;
 mod scene;
 mod shard;
 mod sighting;
