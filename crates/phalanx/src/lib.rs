@@ -1,73 +1,54 @@
 #![doc = include_str!("../README.md")]
 
-mod basis;
-mod container;
-mod coverage;
-mod damage;
-mod decode;
-mod describe;
-mod descriptor;
 mod error;
 mod estimator;
+mod features;
 mod fitting;
-mod gathered;
 mod global_pose;
-mod hypotheses;
+mod images;
 mod localize;
 mod losses;
-mod model_file;
-mod observation;
-mod outline;
-mod overlay;
-mod part;
-mod picture;
-mod preset;
 mod progress;
 #[cfg(test)]
 #[path = "../tests/property/mod.rs"]
 mod property;
-mod random;
 mod refiner;
-mod regression;
-mod regressor;
 mod restarts;
-mod scene;
-mod shard;
 mod sighting;
 mod synthesis;
-mod trainer;
 mod training;
-mod training_views;
 mod window;
 
-pub use damage::{Border, Damage, Hands};
-pub use decode::decode_picture;
-pub use describe::{Describer, OrientationRule, Sight, WORKING_SIZE, working_camera};
-pub use descriptor::{Beside, Descriptor, describe_scenes};
 pub use error::{Error, Result};
-pub use estimator::{Estimate, Estimator, Workspace};
+pub use estimator::error_model::Hypothesis;
+pub use estimator::estimate::{Estimate, Estimator, Workspace};
+pub use estimator::observation::{Observation, ObservedView};
+pub use estimator::regression::Regression;
+pub use features::describer::{Describer, OrientationRule, Sight, WORKING_SIZE, working_camera};
+pub use features::descriptor::{Beside, Descriptor, describe_scenes};
 pub use fitting::{
     FitDoubt, FrameFit, Missing, Proportions, TakeFit, TakeFrame, TakeSettings, ViewFit,
     VolumeEstimate, estimate_volume, fit_frame, fit_take,
 };
 pub use global_pose::{GlobalStart, initial_global};
-pub use hypotheses::Hypothesis;
+pub use images::decode::decode_picture;
+pub use images::overlay::{draw_overlay, draw_window_overlay, working_window};
+pub use images::picture::{Picture, Segmenter};
 pub use localize::{Arm, Ball, Detections, HandCrop, Placement, associate};
 pub use losses::{LossReason, Losses};
-pub use observation::{Observation, ObservedView};
-pub use overlay::{draw_overlay, draw_window_overlay, working_window};
-pub use part::Part;
-pub use picture::{Picture, Segmenter};
-pub use preset::Preset;
 pub use progress::{Progress, Silent};
-pub use random::ItemRandom;
 pub use refiner::{RefinedEstimate, Refiner};
-pub use regression::Regression;
-pub use regressor::{LearntMetric, NetworkTraining, Regressor};
-pub use scene::{NominalScenes, Scene, SceneSubset, Scenes, View};
-pub use shard::Shard;
-pub use synthesis::{PoseSource, SampledScenes, SceneSampler};
-pub use trainer::{Cost, Trainer};
-pub use training::{Description, Training, descriptors, targets};
-pub use training_views::{PoseContexts, SceneDescriber, describe_each, draw_silhouette};
+pub use synthesis::augmentation::{Border, Damage, Hands};
+pub use synthesis::rng::ItemRandom;
+pub use synthesis::sampler::{PoseSource, SampledScenes, SceneSampler};
+pub use synthesis::scene::{NominalScenes, Scene, SceneSubset, Scenes, View};
+pub use synthesis::scene_describer::{
+    PoseContexts, SceneDescriber, describe_each, draw_silhouette,
+};
+pub use training::partial::Part;
+pub use training::preset::Preset;
+pub use training::recipe::{Description, Training, descriptors, targets};
+pub use training::regressor::{LearntMetric, NetworkTraining, Regressor};
+pub use training::shard::Shard;
+pub use training::trainer::{Cost, Trainer};
 pub use window::{Framing, Window, WindowFinder};

@@ -1,5 +1,7 @@
 //! Scenes that are drawn to learn from.
 
-mod sampler;
-
-pub use sampler::{PoseSource, SampledScenes, SceneSampler};
+pub(crate) mod augmentation;
+pub(crate) mod rng;
+pub(crate) mod sampler;
+pub(crate) mod scene;
+pub(crate) mod scene_describer;

@@ -6,7 +6,11 @@ use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, coupled_pose};
 use serde::{Deserialize, Serialize};
 
-use crate::{Damage, Error, Framing, ItemRandom, Result, Scene, Scenes};
+use crate::error::{Error, Result};
+use crate::synthesis::augmentation::Damage;
+use crate::synthesis::rng::ItemRandom;
+use crate::synthesis::scene::{Scene, Scenes};
+use crate::window::Framing;
 
 /// How far the arm of a hand anywhere leans in θ_X and in θ_Y, degrees: a person who sits or stands
 /// before the cameras and reaches for the middle of the volume.

@@ -8,7 +8,7 @@ use phalanx_render::Renderer;
 use phalanx_segmentation::{Cleanup, Silhouette, Workspace, clean_into, downsample_mask};
 
 use super::{Window, WindowFinder, resample};
-use crate::damage::make_ragged;
+use crate::synthesis::augmentation::make_ragged;
 use crate::{Describer, Error, Result, WORKING_SIZE};
 
 /// The longest side of a picture in which hands are found, px: a [`HandFinder`] looks at no more than

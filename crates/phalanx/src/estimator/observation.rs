@@ -2,7 +2,7 @@
 
 use phalanx_segmentation::{Forearm, Silhouette};
 
-use crate::{Framing, Window};
+use crate::window::{Framing, Window};
 
 /// What was seen of a hand, camera by camera in the order of the rig.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,8 +8,10 @@ use phalanx_segmentation::{
 use phalanx_shape_context::{Descriptors, Orientation, ShapeContexts};
 use serde::{Deserialize, Serialize};
 
-use crate::outline::{chain, trace_outline};
-use crate::{Error, Framing, Picture, Result};
+use crate::error::{Error, Result};
+use crate::features::outline::{chain, trace_outline};
+use crate::images::picture::Picture;
+use crate::window::Framing;
 
 /// The size at which pictures are described, width and height: the paper's 90 × 120 pixels.
 pub const WORKING_SIZE: (u32, u32) = (120, 90);

@@ -4,14 +4,18 @@ use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
 use serde::{Deserialize, Serialize};
 
-use crate::basis::{Basis, described_ones, targets_of};
-use crate::container::Container;
-use crate::gathered::Gathered;
-use crate::shard::{BLOCK, scenes_of};
-use crate::{
-    Error, Estimator, Losses, Progress, Result, SceneSampler, Scenes, Shard, Training,
-    describe_scenes,
-};
+use crate::error::{Error, Result};
+use crate::estimator::container::Container;
+use crate::estimator::estimate::Estimator;
+use crate::features::descriptor::describe_scenes;
+use crate::losses::Losses;
+use crate::progress::Progress;
+use crate::synthesis::sampler::SceneSampler;
+use crate::synthesis::scene::Scenes;
+use crate::training::plan::{Basis, described_ones, targets_of};
+use crate::training::recipe::Training;
+use crate::training::shard::{BLOCK, Shard, scenes_of};
+use crate::training::statistics::Gathered;
 
 const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 5 };
 
@@ -210,11 +214,13 @@ mod tests {
     use phalanx_rvm::{BlockPca, Ridge};
 
     use super::*;
-    use crate::basis::Reading;
-    use crate::{NominalScenes, Regressor, Silent};
+    use crate::progress::Silent;
+    use crate::synthesis::scene::NominalScenes;
+    use crate::training::plan::Reading;
+    use crate::training::regressor::Regressor;
 
     fn part() -> Part {
-        let rig = Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap();
+        let rig = Rig::from_toml(include_str!("../../fixtures/desk.toml")).unwrap();
         let rig = rig.select(&["top"]).unwrap();
         let hand = HandShape::adult();
         let poses: Vec<Pose> = (0..24)

@@ -10,9 +10,12 @@ use phalanx_rvm::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::basis::Reading;
-use crate::scene::SUBSET_SEED;
-use crate::{Descriptor, Error, Progress, Regression, Result};
+use crate::error::{Error, Result};
+use crate::estimator::regression::Regression;
+use crate::features::descriptor::Descriptor;
+use crate::progress::Progress;
+use crate::synthesis::scene::SUBSET_SEED;
+use crate::training::plan::Reading;
 
 /// Samples that are added to sums at a time.
 const BATCH: usize = 4096;

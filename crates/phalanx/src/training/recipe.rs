@@ -7,10 +7,16 @@ use phalanx_multiview::{Codes, Concatenation, Scratch, Vocabulary};
 use phalanx_rvm::{Bandwidth, KernelRidge, Regularisation};
 use rayon::prelude::*;
 
-use crate::{
-    Beside, Descriptor, Error, Estimator, Framing, NominalScenes, OrientationRule, PoseContexts,
-    Progress, Regressor, Result, Shard, Sight,
-};
+use crate::error::{Error, Result};
+use crate::estimator::estimate::Estimator;
+use crate::features::describer::{OrientationRule, Sight};
+use crate::features::descriptor::{Beside, Descriptor};
+use crate::progress::Progress;
+use crate::synthesis::scene::NominalScenes;
+use crate::synthesis::scene_describer::PoseContexts;
+use crate::training::regressor::Regressor;
+use crate::training::shard::Shard;
+use crate::window::Framing;
 
 /// How an estimator is learnt. The default is the paper's descriptor, turned to the forearm's axis,
 /// with dense kernel regression.

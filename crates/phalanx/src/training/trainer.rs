@@ -3,11 +3,16 @@
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 
-use crate::part::ErrorScenes;
-use crate::{
-    Damage, Estimator, Framing, Part, PoseSource, Preset, Progress, Result, SceneSampler, Shard,
-    Training,
-};
+use crate::error::Result;
+use crate::estimator::estimate::Estimator;
+use crate::progress::Progress;
+use crate::synthesis::augmentation::Damage;
+use crate::synthesis::sampler::{PoseSource, SceneSampler};
+use crate::training::partial::{ErrorScenes, Part};
+use crate::training::preset::Preset;
+use crate::training::recipe::Training;
+use crate::training::shard::Shard;
+use crate::window::Framing;
 
 /// Trains an estimator as a [`Preset`] says: draws random scenes, learns from them, and fits a model of
 /// the estimator's errors to further scenes.

@@ -7,7 +7,7 @@ use image::{
     DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, ImageResult, Limits,
 };
 
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// The longest side of a picture that is decoded, px.
 const MOST_PIXELS_ASIDE: u32 = 16_384;

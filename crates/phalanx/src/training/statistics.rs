@@ -8,9 +8,11 @@ use phalanx_rvm::{BasisSpec, GroupedRegressor, SufficientStatistics};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::basis::{Basis, Reading};
-use crate::regressor::Kept;
-use crate::{Error, Progress, Regression, Result};
+use crate::error::{Error, Result};
+use crate::estimator::regression::Regression;
+use crate::progress::Progress;
+use crate::training::plan::{Basis, Reading};
+use crate::training::regressor::Kept;
 
 /// Enough of the scenes to fit the regressor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -7,11 +7,15 @@ use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
 use phalanx_rvm::ResidualKde;
 use phalanx_segmentation::Silhouette;
 
+use crate::error::{Error, Result};
+use crate::estimator::observation::{Observation, ObservedView};
+use crate::estimator::regression::Regression;
+use crate::features::describer::OrientationRule;
+use crate::features::descriptor;
+use crate::features::descriptor::Descriptor;
 use crate::global_pose::place;
-use crate::{
-    Descriptor, Error, Framing, Observation, ObservedView, OrientationRule, Picture, Regression,
-    Result, WindowFinder, descriptor,
-};
+use crate::images::picture::Picture;
+use crate::window::{Framing, WindowFinder};
 
 /// A pose estimator for one rig and one hand; see [`Training`](crate::Training) for how to get
 /// one.

@@ -7,12 +7,15 @@ use phalanx_rvm::{BasisSpec, BlockPca, LearnedMetric, PilotSample, random_subset
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::regressor::{Kept, columns_of};
-use crate::scene::SUBSET_SEED;
-use crate::{
-    Descriptor, Error, Losses, Progress, Regressor, Result, SceneSubset, Scenes, Training,
-    describe_each, describe_scenes, targets,
-};
+use crate::error::{Error, Result};
+use crate::features::descriptor::{Descriptor, describe_scenes};
+use crate::losses::Losses;
+use crate::progress::Progress;
+use crate::synthesis::scene::SUBSET_SEED;
+use crate::synthesis::scene::{SceneSubset, Scenes};
+use crate::synthesis::scene_describer::describe_each;
+use crate::training::recipe::{Training, targets};
+use crate::training::regressor::{Kept, Regressor, columns_of};
 
 /// What every part of a training must know before it begins; each finds it by itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

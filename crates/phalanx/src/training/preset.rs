@@ -7,9 +7,10 @@ use phalanx_rvm::{
     PredictiveDeviation,
 };
 
-use crate::{
-    Description, Framing, LearntMetric, NetworkTraining, OrientationRule, Regressor, Training,
-};
+use crate::features::describer::OrientationRule;
+use crate::training::recipe::{Description, Training};
+use crate::training::regressor::{LearntMetric, NetworkTraining, Regressor};
+use crate::window::Framing;
 
 /// How much time an estimator is worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

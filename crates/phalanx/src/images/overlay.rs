@@ -4,8 +4,9 @@ use image::{Rgb, RgbImage};
 use phalanx_segmentation::{CropWindow, Silhouette};
 use phalanx_shape_context::hand_axis;
 
-use crate::outline::trace_outline;
-use crate::{OrientationRule, WORKING_SIZE, Window};
+use crate::features::describer::{OrientationRule, WORKING_SIZE};
+use crate::features::outline::trace_outline;
+use crate::window::Window;
 
 const OBSERVED: Rgb<u8> = Rgb([40, 220, 90]);
 const AXIS: Rgb<u8> = Rgb([255, 210, 0]);

@@ -8,12 +8,14 @@ use phalanx_render::Renderer;
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
-use crate::damage::make_ragged;
-use crate::scene::View;
+use crate::error::{Error, Result};
+use crate::features::describer::{Describer, Sight, working_camera};
+use crate::images::picture::Picture;
+use crate::progress::Progress;
+use crate::synthesis::augmentation::make_ragged;
+use crate::synthesis::scene::{Scene, Scenes, View};
+use crate::window::Framing;
 use crate::window::{DrawnView, DrawnWindows};
-use crate::{
-    Describer, Error, Framing, Picture, Progress, Result, Scene, Scenes, Sight, working_camera,
-};
 
 /// The shape contexts of one pose: for each camera, its contour points' histograms one after the
 /// other.

@@ -3,7 +3,7 @@
 use image::{GrayImage, RgbImage};
 use phalanx_segmentation::{BackgroundModel, SkinModel, Wall};
 
-use crate::Result;
+use crate::error::Result;
 
 /// One camera's picture of the hand.
 #[derive(Debug, Clone, Copy)]

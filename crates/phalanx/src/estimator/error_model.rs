@@ -5,11 +5,15 @@ use phalanx_hand::{Dof, Pose, Unit};
 use phalanx_rvm::ResidualKde;
 use rayon::prelude::*;
 
-use crate::estimator::known;
+use crate::error::{Error, Result};
+use crate::estimator::estimate::{Estimate, Estimator, known};
+use crate::features::descriptor::describe_scenes;
 use crate::global_pose::PLACED;
-use crate::{
-    Error, Estimate, Estimator, Framing, Losses, Progress, Result, Scenes, describe_scenes, targets,
-};
+use crate::losses::Losses;
+use crate::progress::Progress;
+use crate::synthesis::scene::Scenes;
+use crate::training::recipe::targets;
+use crate::window::Framing;
 
 /// Scenes with estimates near to one that say how such an estimate errs.
 const NEIGHBOURS: usize = 200;

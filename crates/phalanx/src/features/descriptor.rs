@@ -8,8 +8,12 @@ use phalanx_shape_context::BINS;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::coverage::{COVERAGE, coverage_into};
-use crate::{Describer, Error, OrientationRule, Progress, Result, SceneDescriber, Scenes, Sight};
+use crate::error::{Error, Result};
+use crate::features::describer::{Describer, OrientationRule, Sight};
+use crate::features::occupancy::{COVERAGE, coverage_into};
+use crate::progress::Progress;
+use crate::synthesis::scene::Scenes;
+use crate::synthesis::scene_describer::SceneDescriber;
 
 /// What a regressor reads of the silhouettes: codes of their shape contexts, view by view, and then
 /// what is put beside them.

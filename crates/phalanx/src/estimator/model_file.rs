@@ -7,8 +7,11 @@ use phalanx_hand::HandShape;
 use phalanx_rvm::{GroupedRegressor, Model, ModelParts, PcaMlp, ResidualKde, ResidualKdeParts};
 use serde::{Deserialize, Serialize};
 
-use crate::container::Container;
-use crate::{Descriptor, Estimator, Regression, Result};
+use crate::error::Result;
+use crate::estimator::container::Container;
+use crate::estimator::estimate::Estimator;
+use crate::estimator::regression::Regression;
+use crate::features::descriptor::Descriptor;
 
 const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 7 };
 

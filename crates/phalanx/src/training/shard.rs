@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::str::FromStr;
 
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// Scenes that are drawn, described and summed together. Shards consist of whole blocks, so that
 /// the sums of one block are the same in any of them.

@@ -9,7 +9,8 @@ use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{HandShape, Pose};
 use serde::{Deserialize, Serialize};
 
-use crate::{ItemRandom, Scene, View};
+use crate::synthesis::rng::ItemRandom;
+use crate::synthesis::scene::{Scene, View};
 
 /// How scenes differ from what the rig is made for. Each field that is zero leaves its part of the
 /// scene as it is. Angles are radians.

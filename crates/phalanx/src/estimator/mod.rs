@@ -1,0 +1,8 @@
+//! The fitted estimator, what it returns, and its file.
+
+pub(crate) mod container;
+pub(crate) mod error_model;
+pub(crate) mod estimate;
+pub(crate) mod model_file;
+pub(crate) mod observation;
+pub(crate) mod regression;

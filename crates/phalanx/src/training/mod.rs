@@ -1,0 +1,10 @@
+//! From scenes to an estimator, whole or in shards.
+
+pub(crate) mod partial;
+pub(crate) mod plan;
+pub(crate) mod preset;
+pub(crate) mod recipe;
+pub(crate) mod regressor;
+pub(crate) mod shard;
+pub(crate) mod statistics;
+pub(crate) mod trainer;
