@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let estimator = learnt.finish(&Silent)?;
     let refiner = Refiner::for_estimator(&estimator, Refinement::default())?;
 
-    let mut describer = SceneDescriber::new(&rig, estimator.descriptor().sight())?;
+    let mut describer = SceneDescriber::new(&rig, estimator.descriptor().view_config())?;
     let mut workspace = Workspace::default();
     println!("mean error of the 20 joint angles");
     println!("estimated  refined  overlap in each view");

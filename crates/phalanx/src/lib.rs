@@ -24,8 +24,10 @@ pub use estimator::error_model::Hypothesis;
 pub use estimator::estimate::{Estimate, Estimator, Workspace};
 pub use estimator::observation::{Observation, ObservedView};
 pub use estimator::regression::Regression;
-pub use features::describer::{Describer, OrientationRule, Sight, WORKING_SIZE, working_camera};
-pub use features::descriptor::{Beside, Descriptor, describe_scenes};
+pub use features::describer::{
+    Describer, OrientationRule, ViewConfig, WORKING_SIZE, working_camera,
+};
+pub use features::descriptor::{Descriptor, ExtraFeatures, describe_scenes};
 pub use fitting::{
     FitDoubt, FrameFit, Missing, Proportions, TakeFit, TakeFrame, TakeSettings, ViewFit,
     VolumeEstimate, estimate_volume, fit_frame, fit_take,
@@ -47,7 +49,7 @@ pub use synthesis::scene_describer::{
 };
 pub use training::partial::Part;
 pub use training::preset::Preset;
-pub use training::recipe::{Description, Training, descriptors, targets};
+pub use training::recipe::{Encoding, Training, descriptors, targets};
 pub use training::regressor::{LearntMetric, NetworkTraining, Regressor};
 pub use training::shard::Shard;
 pub use training::trainer::{Cost, Trainer};

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use image::{GrayImage, Luma};
 use phalanx::{
     Border, Damage, Framing, NominalScenes, OrientationRule, Picture, Refiner, Scene,
-    SceneDescriber, Sight, Training, Window, WindowFinder, Workspace, initial_global,
+    SceneDescriber, Training, ViewConfig, Window, WindowFinder, Workspace, initial_global,
 };
 use phalanx_camera::{Camera, Distortion, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
@@ -17,8 +17,8 @@ use phalanx_render::Renderer;
 use phalanx_segmentation::{LocatedHand, Silhouette};
 use proptest::prelude::*;
 
-const THROUGH_WINDOWS: Sight =
-    Sight { orientation: OrientationRule::ForearmAxis, framing: Framing::Window };
+const THROUGH_WINDOWS: ViewConfig =
+    ViewConfig { orientation: OrientationRule::ForearmAxis, framing: Framing::Window };
 
 fn rig() -> Rig {
     Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap()
@@ -120,7 +120,7 @@ fn training_and_use_see_the_same() {
     let estimator = training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::Silent).unwrap();
     let read = phalanx::Estimator::from_bytes(&estimator.to_bytes().unwrap()).unwrap();
     assert_eq!(read, estimator);
-    assert_eq!(read.descriptor().sight(), THROUGH_WINDOWS);
+    assert_eq!(read.descriptor().view_config(), THROUGH_WINDOWS);
     let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
     let (mut workspace, mut worst) = (Workspace::default(), 0.0_f64);
     for pose in unseen() {

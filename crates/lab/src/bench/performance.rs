@@ -210,7 +210,7 @@ fn body(command: &str, medians: &Medians, scale: &str) -> Result<String> {
          ## Training on many samples\n\n\
          `cargo xtask train --data-set random --augment --samples N`, three views, all cores, each in a\n\
          process of its own. Codebooks from 1,000 samples and 2,000 kernel centres are a fixed cost.\n\n{}\n\
-         ## Beside others\n\n\
+         ## ExtraFeatures others\n\n\
          The figures of others come from other runs, and the paper's from another computer: they\n\
          are for orientation.\n\n{}",
         processor(),

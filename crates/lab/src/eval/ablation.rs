@@ -4,7 +4,7 @@ use anyhow::Result;
 use clap::Args;
 use comfy_table::{Table, presets};
 use phalanx::{
-    Description, Estimator, Framing, OrientationRule, Preset, Progress, Regressor, Training,
+    Encoding, Estimator, Framing, OrientationRule, Preset, Progress, Regressor, Training,
 };
 use phalanx_hand::Pose;
 use phalanx_refine::{Doubt, Refinement};
@@ -123,7 +123,7 @@ fn learnings(samples: usize) -> Vec<(&'static str, Learning)> {
     vec![
         ("few scenes: 2,000", Learning { scenes: FEW, ..whole() }),
         ("clean scenes", Learning { augment: Augment::No, ..whole() }),
-        ("coding by counts", training(|own| own.description = Description::Counts)),
+        ("coding by counts", training(|own| own.encoding = Encoding::SoftHistogram)),
         (
             "800 Gaussians, a distance for each digit",
             training(|own| own.regressor = Preset::Fast.training().regressor),

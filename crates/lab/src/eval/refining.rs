@@ -75,7 +75,7 @@ impl Refining {
                 refined::own_hands(estimator, &refiner, &views, set, ground, progress)?
             }
         };
-        let describer = SceneDescriber::new(&ground.rig, estimator.descriptor().sight())?;
+        let describer = SceneDescriber::new(&ground.rig, estimator.descriptor().view_config())?;
         let numbers: Vec<usize> = (0..set.count()).step_by(every).collect();
         progress.begin(&format!("refine {}", set.name), numbers.len());
         let memory = || (describer.clone(), Workspace::default());

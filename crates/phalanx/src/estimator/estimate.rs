@@ -111,7 +111,7 @@ impl Estimator {
 
     /// What of the pictures it looks at.
     pub fn framing(&self) -> Framing {
-        self.descriptor.sight().framing
+        self.descriptor.view_config().framing
     }
 
     /// Its regressor.

@@ -39,14 +39,14 @@ pub enum OrientationRule {
 
 /// How pictures are looked at. Whoever asks for an [`OrientationRule`] alone gets whole pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Sight {
+pub struct ViewConfig {
     /// Which way shape contexts are turned.
     pub orientation: OrientationRule,
     /// What of the pictures is described.
     pub framing: Framing,
 }
 
-impl From<OrientationRule> for Sight {
+impl From<OrientationRule> for ViewConfig {
     fn from(orientation: OrientationRule) -> Self {
         Self { orientation, framing: Framing::default() }
     }

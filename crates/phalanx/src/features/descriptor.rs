@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::features::describer::{Describer, OrientationRule, Sight};
-use crate::features::occupancy::{COVERAGE, coverage_into};
+use crate::features::describer::{Describer, OrientationRule, ViewConfig};
+use crate::features::occupancy::{OCCUPANCY, occupancy_into};
 use crate::progress::Progress;
 use crate::synthesis::scene::Scenes;
 use crate::synthesis::scene_describer::SceneDescriber;
@@ -19,21 +19,21 @@ use crate::synthesis::scene_describer::SceneDescriber;
 /// what is put beside them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Descriptor {
-    sight: Sight,
+    view_config: ViewConfig,
     codes: Codes,
-    beside: Beside,
+    extra_features: ExtraFeatures,
 }
 
 /// What is put beside the codes of the shape contexts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub enum Beside {
+pub enum ExtraFeatures {
     /// Nothing, as in the paper.
     Nothing,
     /// How much of each cell of a 24 × 18 grid over the picture is hand, for each view. Shape
     /// contexts know where points lie among each other; this knows where they lie in the picture,
     /// which a calibrated camera gives a meaning.
-    Coverage,
+    OccupancyGrid,
 }
 
 /// Memory that describing one sample after another uses again.
@@ -46,18 +46,22 @@ pub(crate) struct Memory {
 
 impl Descriptor {
     /// Puts a descriptor together.
-    pub fn new(sight: impl Into<Sight>, codes: impl Into<Codes>, beside: Beside) -> Self {
-        Self { sight: sight.into(), codes: codes.into(), beside }
+    pub fn new(
+        view_config: impl Into<ViewConfig>,
+        codes: impl Into<Codes>,
+        extra_features: ExtraFeatures,
+    ) -> Self {
+        Self { view_config: view_config.into(), codes: codes.into(), extra_features }
     }
 
     /// Which way shape contexts are turned.
     pub fn orientation(&self) -> OrientationRule {
-        self.sight.orientation
+        self.view_config.orientation
     }
 
     /// How pictures are looked at.
-    pub fn sight(&self) -> Sight {
-        self.sight
+    pub fn view_config(&self) -> ViewConfig {
+        self.view_config
     }
 
     /// The codings of the views' shape contexts.
@@ -66,8 +70,8 @@ impl Descriptor {
     }
 
     /// What is put beside them.
-    pub fn beside(&self) -> Beside {
-        self.beside
+    pub fn extra_features(&self) -> ExtraFeatures {
+        self.extra_features
     }
 
     /// The number of views.
@@ -82,12 +86,12 @@ impl Descriptor {
 
     /// The lengths of its parts: each view's code, then what is beside, each view's again.
     pub(crate) fn blocks(&self) -> Vec<usize> {
-        let beside = match self.beside {
-            Beside::Nothing => 0,
-            Beside::Coverage => self.views(),
+        let extra_features = match self.extra_features {
+            ExtraFeatures::Nothing => 0,
+            ExtraFeatures::OccupancyGrid => self.views(),
         };
         let codes = self.codes.views().iter().map(Coding::dim);
-        codes.chain(std::iter::repeat_n(COVERAGE, beside)).collect()
+        codes.chain(std::iter::repeat_n(OCCUPANCY, extra_features)).collect()
     }
 
     /// Refuses codings of something other than shape contexts.
@@ -118,16 +122,16 @@ impl Descriptor {
         let views = rig.cameras.iter().zip(silhouettes.clone()).zip(&mut *contexts);
         for ((camera, silhouette), kept) in views {
             let contexts = describer
-                .contexts(silhouette, self.sight.orientation)
+                .contexts(silhouette, self.view_config.orientation)
                 .map_err(|reason| Error::ShapeContext { camera: camera.name.clone(), reason })?;
             kept.clear();
             kept.extend_from_slice(contexts.values());
         }
         x.resize(self.dim(), 0.0);
-        let (codes, beside) = x.split_at_mut(self.codes.dim());
+        let (codes, extra_features) = x.split_at_mut(self.codes.dim());
         self.codes.describe(contexts, coding, codes)?;
-        for (silhouette, cells) in silhouettes.zip(beside.chunks_exact_mut(COVERAGE)) {
-            coverage_into(&silhouette.mask, cells);
+        for (silhouette, cells) in silhouettes.zip(extra_features.chunks_exact_mut(OCCUPANCY)) {
+            occupancy_into(&silhouette.mask, cells);
         }
         Ok(())
     }
@@ -146,7 +150,7 @@ pub fn describe_scenes(
     descriptor: &Descriptor,
     progress: &dyn Progress,
 ) -> Result<Vec<Result<Vec<f64>>>> {
-    let drawing = SceneDescriber::new(rig, descriptor.sight)?;
+    let drawing = SceneDescriber::new(rig, descriptor.view_config)?;
     let describe = |(drawing, memory): &mut (SceneDescriber, Memory), &pose: &usize| {
         let mut x = Vec::new();
         let described = drawing.see(&scenes.scene(pose)).and_then(|()| {

@@ -6,14 +6,14 @@ use image::GrayImage;
 /// [`WORKING_SIZE`](crate::WORKING_SIZE).
 const CELLS: (u32, u32) = (24, 18);
 /// Numbers of a view's grid.
-pub(crate) const COVERAGE: usize = (CELLS.0 * CELLS.1) as usize;
+pub(crate) const OCCUPANCY: usize = (CELLS.0 * CELLS.1) as usize;
 
 /// The part of each cell of a grid that is hand, 0 to 1, row by row.
 ///
 /// # Panics
-/// If `out` is not [`COVERAGE`] long.
-pub(crate) fn coverage_into(mask: &GrayImage, out: &mut [f64]) {
-    assert_eq!(out.len(), COVERAGE, "one number for each cell");
+/// If `out` is not [`OCCUPANCY`] long.
+pub(crate) fn occupancy_into(mask: &GrayImage, out: &mut [f64]) {
+    assert_eq!(out.len(), OCCUPANCY, "one number for each cell");
     let (width, height) = mask.dimensions();
     let edge = |cell: u32, cells: u32, length: u32| (cell * length / cells) as usize;
     for (row, cells) in out.chunks_exact_mut(CELLS.0 as usize).enumerate() {
@@ -40,8 +40,8 @@ mod tests {
     fn each_cell_tells_its_share() {
         let hand = |x: u32, y: u32| x < 60 && (y < 45 || x.is_multiple_of(5));
         let mask = GrayImage::from_fn(120, 90, |x, y| Luma([if hand(x, y) { 255 } else { 0 }]));
-        let mut cells = vec![f64::NAN; COVERAGE];
-        coverage_into(&mask, &mut cells);
+        let mut cells = vec![f64::NAN; OCCUPANCY];
+        occupancy_into(&mask, &mut cells);
         for (place, cell) in cells.into_iter().enumerate() {
             let (row, column) = (place / 24, place % 24);
             let expected = match (row < 9, column < 12) {
@@ -57,8 +57,8 @@ mod tests {
     fn any_size_has_as_many_cells() {
         for (width, height) in [(16, 16), (640, 480), (121, 91)] {
             let mask = GrayImage::from_pixel(width, height, Luma([255]));
-            let mut cells = vec![f64::NAN; COVERAGE];
-            coverage_into(&mask, &mut cells);
+            let mut cells = vec![f64::NAN; OCCUPANCY];
+            occupancy_into(&mask, &mut cells);
             assert!(cells.iter().all(|cell| *cell == 0.0 || *cell == 1.0));
         }
     }

@@ -9,7 +9,7 @@ use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
-use crate::features::describer::{Describer, Sight, working_camera};
+use crate::features::describer::{Describer, ViewConfig, working_camera};
 use crate::images::picture::Picture;
 use crate::progress::Progress;
 use crate::synthesis::augmentation::make_ragged;
@@ -29,10 +29,10 @@ pub type PoseContexts = Vec<Vec<f32>>;
 pub fn describe_each(
     rig: &Rig,
     scenes: &dyn Scenes,
-    sight: impl Into<Sight>,
+    view_config: impl Into<ViewConfig>,
     progress: &dyn Progress,
 ) -> Result<Vec<Result<PoseContexts>>> {
-    let describer = SceneDescriber::new(rig, sight)?;
+    let describer = SceneDescriber::new(rig, view_config)?;
     progress.begin("render and describe", scenes.count());
     let describe = |describer: &mut SceneDescriber, pose: usize| {
         let contexts = describer.contexts(&scenes.scene(pose));
@@ -63,7 +63,7 @@ pub fn draw_silhouette(
 /// Draws scenes and describes their silhouettes, one after another in the same memory.
 #[derive(Debug, Clone)]
 pub struct SceneDescriber {
-    sight: Sight,
+    view_config: ViewConfig,
     cameras: Vec<Camera>,
     renderers: Vec<Renderer>,
     drawn: Vec<GrayImage>,
@@ -77,9 +77,9 @@ impl SceneDescriber {
     ///
     /// # Errors
     /// A camera that cannot draw.
-    pub fn new(rig: &Rig, sight: impl Into<Sight>) -> Result<Self> {
-        let sight = sight.into();
-        let drawing = |camera: &Camera| match sight.framing {
+    pub fn new(rig: &Rig, view_config: impl Into<ViewConfig>) -> Result<Self> {
+        let view_config = view_config.into();
+        let drawing = |camera: &Camera| match view_config.framing {
             Framing::Picture => working_camera(camera),
             Framing::Window => Ok(camera.clone()),
         };
@@ -89,11 +89,11 @@ impl SceneDescriber {
                 .map_err(|reason| Error::Render { camera: camera.name.clone(), reason })
         };
         Ok(Self {
-            sight,
+            view_config,
             renderers: cameras.iter().map(renderer).collect::<Result<_>>()?,
             drawn: vec![GrayImage::default(); cameras.len()],
             describer: Describer::default(),
-            windows: match sight.framing {
+            windows: match view_config.framing {
                 Framing::Picture => DrawnWindows::default(),
                 Framing::Window => DrawnWindows::new(&cameras)?,
             },
@@ -108,7 +108,7 @@ impl SceneDescriber {
     /// Another number of views than cameras, or one that cannot be seen or described.
     pub fn contexts(&mut self, scene: &Scene) -> Result<PoseContexts> {
         self.see(scene)?;
-        let rule = self.sight.orientation;
+        let rule = self.view_config.orientation;
         let mut contexts = Vec::with_capacity(self.cameras.len());
         for (camera, silhouette) in self.cameras.iter().zip(&self.silhouettes) {
             let described = self
@@ -148,7 +148,7 @@ impl SceneDescriber {
     }
 
     pub(crate) fn see(&mut self, scene: &Scene) -> Result<()> {
-        match self.sight.framing {
+        match self.view_config.framing {
             Framing::Picture => {
                 self.draw(scene)?;
                 let views = self.cameras.iter().zip(&self.drawn).zip(&mut self.silhouettes);

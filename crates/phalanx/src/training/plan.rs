@@ -53,7 +53,7 @@ impl Training {
     ) -> Result<Basis> {
         self.regressor.check_samples(scenes.count(), self.least_dim(rig.cameras.len()))?;
         let some = SceneSubset::new(scenes, Training::CODEBOOK_SCENES);
-        let described = describe_each(rig, &some, self.sight(), progress)?;
+        let described = describe_each(rig, &some, self.view_config(), progress)?;
         let (mut contexts, mut losses) = (Vec::with_capacity(described.len()), Losses::default());
         for (place, described) in described.into_iter().enumerate() {
             match described {

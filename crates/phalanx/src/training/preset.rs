@@ -8,7 +8,7 @@ use phalanx_rvm::{
 };
 
 use crate::features::describer::OrientationRule;
-use crate::training::recipe::{Description, Training};
+use crate::training::recipe::{Encoding, Training};
 use crate::training::regressor::{LearntMetric, NetworkTraining, Regressor};
 use crate::window::Framing;
 
@@ -70,7 +70,7 @@ impl Preset {
                 clustering: KMeans { restarts: 1, ..KMeans::default() },
                 ..Vocabulary::default()
             },
-            description: Description::Residuals,
+            encoding: Encoding::Vlad,
             regressor,
         }
     }

@@ -9,8 +9,8 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::estimator::estimate::Estimator;
-use crate::features::describer::{OrientationRule, Sight};
-use crate::features::descriptor::{Beside, Descriptor};
+use crate::features::describer::{OrientationRule, ViewConfig};
+use crate::features::descriptor::{Descriptor, ExtraFeatures};
 use crate::progress::Progress;
 use crate::synthesis::scene::NominalScenes;
 use crate::synthesis::scene_describer::PoseContexts;
@@ -33,19 +33,19 @@ pub struct Training {
     /// The codebooks.
     pub vocabulary: Vocabulary,
     /// What is described with them.
-    pub description: Description,
+    pub encoding: Encoding,
     /// The regressor.
     pub regressor: Regressor,
 }
 
 /// What of the silhouettes is described.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Description {
+pub enum Encoding {
     /// Soft counts of the shape contexts, the paper's.
-    Counts,
+    SoftHistogram,
     /// Residuals of the shape contexts to the nearest centres, and beside them the hand's coverage
     /// of a coarse grid.
-    Residuals,
+    Vlad,
 }
 
 impl Default for Training {
@@ -54,7 +54,7 @@ impl Default for Training {
             orientation: OrientationRule::default(),
             framing: Framing::default(),
             vocabulary: Vocabulary::default(),
-            description: Description::Counts,
+            encoding: Encoding::SoftHistogram,
             regressor: Regressor::KernelRidge(KernelRidge {
                 bandwidth: Bandwidth::Relative(0.5),
                 regularisation: Regularisation::Fixed(0.01),
@@ -96,9 +96,9 @@ impl Training {
 
     /// A length that descriptors of so many views have at least.
     pub(crate) fn least_dim(&self, views: usize) -> usize {
-        views.saturating_mul(match self.description {
-            Description::Counts => self.vocabulary.centres / views.max(1),
-            Description::Residuals => self.vocabulary.centres * phalanx_shape_context::BINS,
+        views.saturating_mul(match self.encoding {
+            Encoding::SoftHistogram => self.vocabulary.centres / views.max(1),
+            Encoding::Vlad => self.vocabulary.centres * phalanx_shape_context::BINS,
         })
     }
 
@@ -114,20 +114,22 @@ impl Training {
     }
 
     /// How pictures are looked at.
-    pub(crate) fn sight(&self) -> Sight {
-        Sight { orientation: self.orientation, framing: self.framing }
+    pub(crate) fn view_config(&self) -> ViewConfig {
+        ViewConfig { orientation: self.orientation, framing: self.framing }
     }
 
     /// The descriptor, with codebooks learnt from shape contexts.
     pub(crate) fn descriptor(&self, contexts: &[PoseContexts]) -> Result<Descriptor> {
-        let (bins, sight) = (phalanx_shape_context::BINS, self.sight());
-        Ok(match self.description {
-            Description::Counts => {
-                Descriptor::new(sight, self.vocabulary.fit(contexts, bins)?, Beside::Nothing)
-            }
-            Description::Residuals => {
+        let (bins, view_config) = (phalanx_shape_context::BINS, self.view_config());
+        Ok(match self.encoding {
+            Encoding::SoftHistogram => Descriptor::new(
+                view_config,
+                self.vocabulary.fit(contexts, bins)?,
+                ExtraFeatures::Nothing,
+            ),
+            Encoding::Vlad => {
                 let codes: Codes = self.vocabulary.fit_residuals(contexts, bins)?;
-                Descriptor::new(sight, codes, Beside::Coverage)
+                Descriptor::new(view_config, codes, ExtraFeatures::OccupancyGrid)
             }
         })
     }

@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use phalanx::{
-    Description, Estimator, LearntMetric, NominalScenes, Preset, Regression, Regressor, Shard,
-    Silent, Training,
+    Encoding, Estimator, LearntMetric, NominalScenes, Preset, Regression, Regressor, Shard, Silent,
+    Training,
 };
 use phalanx_hand::HandShape;
 
@@ -67,7 +67,7 @@ fn a_part_is_saved_and_loaded_and_finishes_to_the_same() {
 
 #[test]
 fn what_keeps_its_samples_learns_from_residuals_too() {
-    let training = Training { description: Description::Residuals, ..Training::default() };
+    let training = Training { encoding: Encoding::Vlad, ..Training::default() };
     let learnt = training.run(&top(), &HandShape::adult(), &poses(), &Silent).unwrap();
     roads::generalises(&learnt);
 }

@@ -1,7 +1,7 @@
 //! What cannot be estimated from, by name and camera.
 
 use image::{GrayImage, Luma, RgbImage};
-use phalanx::{Beside, Descriptor, Error, Estimator, Picture, Segmenter, Workspace};
+use phalanx::{Descriptor, Error, Estimator, ExtraFeatures, Picture, Segmenter, Workspace};
 use phalanx_codebook::{AnyCoding, Codebook, Voting};
 use phalanx_multiview::{Codes, Concatenation};
 use phalanx_rvm::Model;
@@ -147,7 +147,7 @@ fn parts_that_do_not_fit_are_refused() {
     let estimator = &*ESTIMATOR;
     let together = |rig, codes: &Codes, model: &Model| {
         let (hand, rule) = (estimator.hand().clone(), estimator.orientation());
-        let descriptor = Descriptor::new(rule, codes.clone(), Beside::Nothing);
+        let descriptor = Descriptor::new(rule, codes.clone(), ExtraFeatures::Nothing);
         Estimator::from_parts(rig, hand, descriptor, model.clone())
     };
     let (codes, model) = (estimator.descriptor().codes(), &estimator.regression().models()[0]);

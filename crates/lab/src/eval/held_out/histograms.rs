@@ -1,6 +1,6 @@
 //! Scenes to descriptors, without keeping the shape contexts in between.
 
-use phalanx::{Error, Progress, Result, SceneDescriber, Scenes, Sight};
+use phalanx::{Error, Progress, Result, SceneDescriber, Scenes, ViewConfig};
 use phalanx_camera::Rig;
 use phalanx_multiview::{Concatenation, Scratch};
 use rayon::prelude::*;
@@ -45,11 +45,11 @@ pub(crate) fn describe_with(
     rig: &Rig,
     scenes: &dyn Scenes,
     numbers: &[usize],
-    sight: impl Into<Sight>,
+    view_config: impl Into<ViewConfig>,
     codebooks: &[ViewCodebooks],
     progress: &dyn Progress,
 ) -> Result<Vec<Result<Vec<Vec<f64>>>>> {
-    let describer = SceneDescriber::new(rig, sight)?;
+    let describer = SceneDescriber::new(rig, view_config)?;
     let describe = |(describer, scratch): &mut (SceneDescriber, Scratch), &number: &usize| {
         let described = describer.contexts(&scenes.scene(number)).and_then(|contexts| {
             codebooks.iter().map(|codebooks| codebooks.describe(&contexts, scratch)).collect()

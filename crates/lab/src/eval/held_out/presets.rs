@@ -223,15 +223,15 @@ pub(crate) fn test(
     let own = learnt.iter().map(|learnt| learnt.own_hands(set, ground, progress));
     let own = own.collect::<Result<Vec<_>>>()?;
     let Some(first) = learnt.first() else { return Ok(Vec::new()) };
-    let sight = first.estimator.descriptor().sight();
-    let describer = SceneDescriber::new(&ground.rig, sight)?;
+    let view_config = first.estimator.descriptor().view_config();
+    let describer = SceneDescriber::new(&ground.rig, view_config)?;
     let every = if learnt.iter().any(Learnt::refines) { REFINED_EVERY } else { 1 };
     let numbers: Vec<usize> = (0..set.count()).step_by(every).collect();
     progress.begin(&format!("see {}", set.name), numbers.len());
     let look = |(describer, workspace): &mut (SceneDescriber, Workspace), &number: &usize| {
         let scene = set.scene(number);
         progress.step();
-        let frame = match sight.framing {
+        let frame = match view_config.framing {
             Framing::Picture => {
                 Frame::Silhouettes(describer.silhouettes(&scene).ok()?.cloned().collect())
             }
