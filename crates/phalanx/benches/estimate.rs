@@ -5,7 +5,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use image::{GrayImage, RgbImage};
 use phalanx::{
-    Estimator, NominalScenes, OrientationRule, Picture, Regressor, Segmenter, Silent, Training,
+    Estimator, FixedPoses, OrientationRule, Picture, Regressor, Segmenter, Silent, Training,
     Workspace, describe_each,
 };
 use phalanx_camera::Rig;
@@ -99,7 +99,7 @@ fn training(c: &mut Criterion) {
     let poses: Vec<Pose> = (0..10).map(pose).collect();
     c.bench_function("draw and describe ten poses in three views", |b| {
         b.iter(|| {
-            let scenes = NominalScenes { rig: &rig, hand: &hand, poses: black_box(&poses) };
+            let scenes = FixedPoses { rig: &rig, hand: &hand, poses: black_box(&poses) };
             describe_each(&rig, &scenes, OrientationRule::default(), &Silent).expect("cameras draw")
         });
     });

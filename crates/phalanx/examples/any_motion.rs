@@ -4,7 +4,8 @@
 use std::error::Error;
 
 use phalanx::{
-    Damage, ItemRandom, Preset, Refiner, Scene, SceneDescriber, Scenes, Shard, Silent, Workspace,
+    Augmentation, ItemRng, Preset, Refiner, Scene, SceneDescriber, SceneSource, Shard, Silent,
+    Workspace,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, coupled_pose};
@@ -21,16 +22,16 @@ struct AnyMotion<'a> {
     count: usize,
 }
 
-impl Scenes for AnyMotion<'_> {
+impl SceneSource for AnyMotion<'_> {
     fn count(&self) -> usize {
         self.count
     }
 
     fn scene(&self, number: usize) -> Scene {
-        let mut random = ItemRandom::new(self.seed, number as u64);
+        let mut random = ItemRng::new(self.seed, number as u64);
         let mut pose = coupled_pose(|| random.uniform());
         pose[Dof::ThetaZ] = random.between(0.0, 90.0_f64.to_radians());
-        Damage::NONE.scene(self.rig, self.hand, pose, self.seed, number)
+        Augmentation::NONE.scene(self.rig, self.hand, pose, self.seed, number)
     }
 }
 

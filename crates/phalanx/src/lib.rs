@@ -40,10 +40,10 @@ pub use localize::{Arm, Ball, Detections, HandCrop, Placement, associate};
 pub use losses::{LossReason, Losses};
 pub use progress::{Progress, Silent};
 pub use refiner::{RefinedEstimate, Refiner};
-pub use synthesis::augmentation::{Border, Damage, Hands};
-pub use synthesis::rng::ItemRandom;
+pub use synthesis::augmentation::{Augmentation, MaskNoise, ShapeVariation};
+pub use synthesis::rng::ItemRng;
 pub use synthesis::sampler::{PoseSource, SampledScenes, SceneSampler};
-pub use synthesis::scene::{NominalScenes, Scene, SceneSubset, Scenes, View};
+pub use synthesis::scene::{FixedPoses, Scene, SceneSource, SceneSubset, SceneView};
 pub use synthesis::scene_describer::{
     PoseContexts, SceneDescriber, describe_each, draw_silhouette,
 };

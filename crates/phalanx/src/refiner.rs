@@ -10,8 +10,8 @@ use phalanx_segmentation::Silhouette;
 
 use crate::global_pose::PLACED;
 use crate::{
-    Error, Estimate, Estimator, Framing, Hypothesis, ItemRandom, Observation, ObservedView,
-    Picture, Result, Workspace, working_camera,
+    Error, Estimate, Estimator, Framing, Hypothesis, ItemRng, Observation, ObservedView, Picture,
+    Result, Workspace, working_camera,
 };
 
 /// Poses from the prior that tell how angles go together.
@@ -85,7 +85,7 @@ impl Refiner {
     /// As of [`new`](Self::new).
     pub fn for_estimator(estimator: &Estimator, refinement: Refinement) -> Result<Self> {
         let pose = |item| {
-            let mut random = ItemRandom::new(0, item);
+            let mut random = ItemRng::new(0, item);
             coupled_pose(|| random.uniform())
         };
         let postures: Vec<Pose> = (0..POSTURES).map(pose).collect();

@@ -3,8 +3,7 @@
 use glam::{DAffine3, DVec3};
 use image::GrayImage;
 use phalanx::{
-    Error, ItemRandom, Missing, Silent, TakeFrame, TakeSettings, estimate_volume, fit_frame,
-    fit_take,
+    Error, ItemRng, Missing, Silent, TakeFrame, TakeSettings, estimate_volume, fit_frame, fit_take,
 };
 use phalanx_camera::{Camera, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
@@ -29,7 +28,7 @@ fn cameras() -> Vec<Camera> {
 
 /// Someone's hand: 6 % longer than the mean one, its bones up to 4 % more or less.
 fn hand() -> HandShape {
-    let mut random = ItemRandom::new(5, 0);
+    let mut random = ItemRng::new(5, 0);
     HandShape::adult().varied(|| 1.06 * random.between(0.96, 1.04))
 }
 

@@ -6,7 +6,7 @@ mod property;
 use glam::{DVec2, DVec3};
 use image::{GrayImage, Luma};
 use phalanx::{
-    Border, Damage, Framing, NominalScenes, OrientationRule, Picture, Refiner, Scene,
+    Augmentation, FixedPoses, Framing, MaskNoise, OrientationRule, Picture, Refiner, Scene,
     SceneDescriber, Training, ViewConfig, Window, WindowFinder, Workspace, initial_global,
 };
 use phalanx_camera::{Camera, Distortion, Intrinsics, Rig};
@@ -164,7 +164,7 @@ fn a_window_is_drawn_as_the_picture_shows_it() {
         let (mut alike, mut ragged, mut views) = (0.0, [0.0; 2], 0.0);
         for (number, pose) in unseen().into_iter().enumerate() {
             let nominal = Scene::nominal(&rig, &HandShape::adult(), pose);
-            let damage = Damage { border: Border::Ragged, ..Damage::NONE };
+            let damage = Augmentation { mask_noise: MaskNoise::Boundary, ..Augmentation::NONE };
             let rough = damage.scene(&rig, &HandShape::adult(), pose, 3, number);
             let (clean, rough) = (both_ways(&rig, &nominal), both_ways(&rig, &rough));
             for view in 0..rig.cameras.len() {
@@ -267,7 +267,7 @@ fn hypotheses_are_where_the_windows_show_the_hand() {
     let (rig, hand) = (rig(), HandShape::adult());
     let estimator = training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::Silent).unwrap();
     let poses = poses();
-    let scenes = NominalScenes { rig: &rig, hand: &hand, poses: &poses };
+    let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
     let estimator = estimator.learn_errors(&scenes, &phalanx::Silent).unwrap();
     let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
     let mut pose = closing(0.4, 20.0);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Result, bail};
-use phalanx::{NominalScenes, OrientationRule, Progress, describe_each};
+use phalanx::{FixedPoses, OrientationRule, Progress, describe_each};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, Unit};
 
@@ -59,7 +59,7 @@ impl DataSet {
         progress: &dyn Progress,
     ) -> Result<Described> {
         let (name, all) = (self.name, self.poses.len());
-        let scenes = NominalScenes { rig, hand, poses: &self.poses };
+        let scenes = FixedPoses { rig, hand, poses: &self.poses };
         let results = describe_each(rig, &scenes, OrientationRule::HandAxis, progress)?;
         let (mut poses, mut contexts, mut first) = (Vec::new(), Vec::new(), None);
         for (pose, result) in self.poses.into_iter().zip(results) {

@@ -1,6 +1,6 @@
 //! Postures of the hand: some with names, and any by which digits are stretched out.
 
-use phalanx::ItemRandom;
+use phalanx::ItemRng;
 use phalanx_hand::{Digit, Pose};
 
 /// A digit's abduction and its three flexions from the base outwards, degrees.
@@ -56,7 +56,7 @@ impl Posture {
     }
 
     /// The posture as it happens to be held: every joint off by up to so many degrees.
-    pub(crate) fn held(&self, by_deg: f64, random: &mut ItemRandom) -> Pose {
+    pub(crate) fn held(&self, by_deg: f64, random: &mut ItemRng) -> Pose {
         posed(self.digits.map(|joints| joints.map(|j| j + random.between(-by_deg, by_deg))))
     }
 }
@@ -70,7 +70,7 @@ pub(crate) fn all_ways_out() -> impl Iterator<Item = Out> {
 }
 
 /// A random posture with these digits out and the others bent.
-pub(crate) fn with_digits_out(out: Out, random: &mut ItemRandom) -> Pose {
+pub(crate) fn with_digits_out(out: Out, random: &mut ItemRng) -> Pose {
     posed(std::array::from_fn(|digit| {
         let mut within = |[low, high]: [f64; 2]| random.between(low, high);
         match (digit, out[digit]) {
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn digits_are_out_where_they_should_be() {
-        let mut random = ItemRandom::new(0, 0);
+        let mut random = ItemRng::new(0, 0);
         for out in all_ways_out() {
             let pose = with_digits_out(out, &mut random);
             for (digit, out) in Digit::ALL.into_iter().zip(out) {

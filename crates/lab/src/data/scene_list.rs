@@ -1,11 +1,11 @@
 //! Scenes that are all at hand.
 
-use phalanx::{Scene, Scenes};
+use phalanx::{Scene, SceneSource};
 
 /// A list of scenes to draw and describe.
 pub(crate) struct SceneList(pub(crate) Vec<Scene>);
 
-impl Scenes for SceneList {
+impl SceneSource for SceneList {
     fn count(&self) -> usize {
         self.0.len()
     }

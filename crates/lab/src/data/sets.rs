@@ -2,7 +2,8 @@
 
 use clap::ValueEnum;
 use phalanx::{
-    Border, Damage, Framing, Hands, ItemRandom, PoseSource, Scene, SceneSampler, Scenes, Trainer,
+    Augmentation, Framing, ItemRng, MaskNoise, PoseSource, Scene, SceneSampler, SceneSource,
+    ShapeVariation, Trainer,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, coupled_pose, uncoupled_pose};
@@ -31,7 +32,7 @@ pub(crate) struct Set<'a> {
     pub(crate) rig: &'a Rig,
     pub(crate) hand: &'a HandShape,
     pub(crate) poses: Vec<Pose>,
-    damage: Damage,
+    damage: Augmentation,
     seed: u64,
 }
 
@@ -39,8 +40,8 @@ impl Set<'_> {
     /// How many hands are seen in turn: scene `number` shows hand `number` modulo this.
     pub(crate) fn hands(&self) -> usize {
         match self.damage.hands {
-            Hands::Several { count, .. } => count,
-            Hands::Given | Hands::Each { .. } => 1,
+            ShapeVariation::Several { count, .. } => count,
+            ShapeVariation::Given | ShapeVariation::Each { .. } => 1,
         }
     }
 
@@ -52,7 +53,7 @@ impl Set<'_> {
     }
 }
 
-impl Scenes for Set<'_> {
+impl SceneSource for Set<'_> {
     fn count(&self) -> usize {
         self.poses.len()
     }
@@ -63,8 +64,8 @@ impl Scenes for Set<'_> {
 }
 
 /// The cameras' tilt, 1° to 3°, in training with damage and in the test with all of it.
-fn turned(low_deg: f64, high_deg: f64) -> Damage {
-    Damage { camera_turn: low_deg.to_radians()..=high_deg.to_radians(), ..Damage::NONE }
+fn turned(low_deg: f64, high_deg: f64) -> Augmentation {
+    Augmentation { camera_turn: low_deg.to_radians()..=high_deg.to_radians(), ..Augmentation::NONE }
 }
 
 /// How many random samples may be asked for, on the command line: a hundred to ten million.
@@ -83,8 +84,8 @@ pub(crate) fn clean<'a>(
     hand: &'a HandShape,
     poses: Vec<Pose>,
 ) -> Set<'a> {
-    let seed = SceneSampler::new(PoseSource::Centred).damage_seed;
-    Set { name, rig, hand, poses, damage: Damage::NONE, seed }
+    let seed = SceneSampler::new(PoseSource::Centred).augmentation_seed;
+    Set { name, rig, hand, poses, damage: Augmentation::NONE, seed }
 }
 
 /// Scenes from which it is learnt how a preset's estimates err.
@@ -94,7 +95,7 @@ pub(crate) const ERROR_SCENES: usize = Trainer::ERROR_SAMPLES;
 fn sampler(poses: PoseSource, augment: Augment) -> SceneSampler {
     let sampler = SceneSampler::new(poses);
     match augment {
-        Augment::No => SceneSampler { damage: Damage::NONE, ..sampler },
+        Augment::No => SceneSampler { augmentation: Augmentation::NONE, ..sampler },
         Augment::Yes => sampler,
     }
 }
@@ -108,7 +109,14 @@ fn drawn<'a>(
     samples: usize,
 ) -> Set<'a> {
     let poses = sampler.scenes(rig, hand, samples).poses().collect();
-    Set { name, rig, hand, poses, damage: sampler.damage.clone(), seed: sampler.damage_seed }
+    Set {
+        name,
+        rig,
+        hand,
+        poses,
+        damage: sampler.augmentation.clone(),
+        seed: sampler.augmentation_seed,
+    }
 }
 
 /// What a preset learns from that looks at hands so.
@@ -258,21 +266,23 @@ impl Test {
         Set { name: self.name(), rig, hand, poses, damage: self.damage(), seed: TEST_DAMAGE }
     }
 
-    fn damage(self) -> Damage {
-        let hands = Hands::Several { count: 8, spread: SPREAD };
+    fn damage(self) -> Augmentation {
+        let hands = ShapeVariation::Several { count: 8, spread: SPREAD };
         match self {
-            Self::Hands => Damage { hands, ..Damage::NONE },
+            Self::Hands => Augmentation { hands, ..Augmentation::NONE },
             Self::Cameras1 => turned(1.0, 1.0),
             Self::Cameras3 => turned(3.0, 3.0),
-            Self::Ragged => Damage { border: Border::Ragged, ..Damage::NONE },
-            Self::Rolled => Damage { camera_roll: 30_f64.to_radians(), ..Damage::NONE },
-            Self::All => Damage { hands, border: Border::Ragged, ..turned(1.0, 3.0) },
+            Self::Ragged => Augmentation { mask_noise: MaskNoise::Boundary, ..Augmentation::NONE },
+            Self::Rolled => Augmentation { camera_roll: 30_f64.to_radians(), ..Augmentation::NONE },
+            Self::All => {
+                Augmentation { hands, mask_noise: MaskNoise::Boundary, ..turned(1.0, 3.0) }
+            }
             Self::Unseen
             | Self::ThetaBetween
             | Self::Random
             | Self::Uncoupled
             | Self::Placed
-            | Self::Poses => Damage::NONE,
+            | Self::Poses => Augmentation::NONE,
         }
     }
 }
@@ -298,7 +308,7 @@ fn outside(motion: &[Pose]) -> Vec<Pose> {
 
 fn turned_at_random(frames: &[Pose], theta_z_deg: &[f64]) -> Vec<Pose> {
     let turned = |(i, mut pose): (usize, Pose)| {
-        let angle = ItemRandom::new(TEST_ANGLES, i as u64).below(theta_z_deg.len());
+        let angle = ItemRng::new(TEST_ANGLES, i as u64).below(theta_z_deg.len());
         pose[Dof::ThetaZ] = theta_z_deg[angle].to_radians();
         pose
     };
@@ -313,9 +323,9 @@ fn evenly_spaced(frames: &[Pose]) -> Vec<Pose> {
 }
 
 /// Independent poses, θ_Z uniform in 0° … 90°.
-fn independent(samples: usize, seed: u64, pose: impl Fn(&mut ItemRandom) -> Pose) -> Vec<Pose> {
+fn independent(samples: usize, seed: u64, pose: impl Fn(&mut ItemRng) -> Pose) -> Vec<Pose> {
     let draw = |i: usize| {
-        let mut random = ItemRandom::new(seed, i as u64);
+        let mut random = ItemRng::new(seed, i as u64);
         let mut pose = pose(&mut random);
         pose[Dof::ThetaZ] = random.between(0.0, std::f64::consts::FRAC_PI_2);
         pose

@@ -5,7 +5,7 @@ use clap::Args;
 use comfy_table::{Table, presets};
 use faer::Mat;
 use phalanx::{
-    Estimate, Estimator, Preset, Progress, Refiner, SceneDescriber, Scenes, Workspace,
+    Estimate, Estimator, Preset, Progress, Refiner, SceneDescriber, SceneSource, Workspace,
     describe_scenes, targets,
 };
 use phalanx_camera::Rig;

@@ -1,7 +1,9 @@
 //! Estimates and what refinement makes of them, with the time that both take.
 
 use anyhow::Result;
-use phalanx::{Estimate, Estimator, Framing, Picture, Progress, SceneDescriber, Scenes, Workspace};
+use phalanx::{
+    Estimate, Estimator, Framing, Picture, Progress, SceneDescriber, SceneSource, Workspace,
+};
 use phalanx_hand::Pose;
 use phalanx_refine::{Doubt, Refinement};
 use phalanx_segmentation::Silhouette;

@@ -6,8 +6,8 @@ use anyhow::Result;
 use clap::Args;
 use image::{RgbImage, imageops};
 use phalanx::{
-    OrientationRule, Picture, Progress, SceneDescriber, Scenes, Segmenter, Training, Workspace,
-    draw_overlay,
+    OrientationRule, Picture, Progress, SceneDescriber, SceneSource, Segmenter, Training,
+    Workspace, draw_overlay,
 };
 use phalanx::{draw_silhouette, working_window};
 use phalanx_camera::Rig;

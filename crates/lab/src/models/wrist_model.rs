@@ -7,7 +7,7 @@ use anyhow::Result;
 use clap::Args;
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use image::GrayImage;
-use phalanx::ItemRandom;
+use phalanx::ItemRng;
 use phalanx_camera::{Camera, Intrinsics};
 use phalanx_hand::{Dof, HandShape, coupled_pose};
 use phalanx_render::Renderer;
@@ -83,7 +83,7 @@ fn test(hand: &HandShape, model: &WristModel) -> Result<String> {
 /// A hand of its own in a pose of its own, seen from anywhere but nearly along its arm, its arm cut
 /// anywhere; nothing where its fingertips are not in the picture.
 fn sample(hand: &HandShape, number: u64) -> Result<Option<Sample>> {
-    let mut random = ItemRandom::new(SEED, number);
+    let mut random = ItemRng::new(SEED, number);
     let hand = hand.varied(|| random.between(1.0 - SPREAD, 1.0 + SPREAD));
     let mut pose = coupled_pose(|| random.uniform());
     pose[Dof::WristFlexion] = random.between(-30.0, 30.0).to_radians();

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Result;
 use image::{GrayImage, RgbImage, imageops};
 use phalanx::{
-    Describer, ItemRandom, OrientationRule, Scene, describe_each, descriptors, draw_silhouette,
+    Describer, ItemRng, OrientationRule, Scene, describe_each, descriptors, draw_silhouette,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Side};
@@ -241,7 +241,7 @@ impl Gallery {
 /// Random postures with these digits out, each of another hand, as the photographs would show it.
 fn scenes(rig: &Rig, hand: &HandShape, out: &[Out], seed: u64) -> SceneList {
     let scene = |(number, out): (usize, &Out)| {
-        let mut random = ItemRandom::new(seed, number as u64);
+        let mut random = ItemRng::new(seed, number as u64);
         let hand = hand.varied(|| random.between(0.9, 1.1));
         let mut pose = with_digits_out(*out, &mut random);
         pose[Dof::ThetaX] = random.between(-15.0, 15.0).to_radians();

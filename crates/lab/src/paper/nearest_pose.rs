@@ -3,8 +3,8 @@
 use anyhow::Result;
 use image::RgbImage;
 use phalanx::{
-    Damage, Hands, ItemRandom, OrientationRule, PoseContexts, Scene, describe_each, descriptors,
-    draw_silhouette,
+    Augmentation, ItemRng, OrientationRule, PoseContexts, Scene, ShapeVariation, describe_each,
+    descriptors, draw_silhouette,
 };
 use phalanx_hand::{Dof, Pose};
 use serde_json::json;
@@ -83,16 +83,16 @@ impl Subject {
         if self.change == Change::Nothing {
             return Scene::nominal(&lab.rig, &lab.hand, pose);
         }
-        let mut random = ItemRandom::new(PLACES, number as u64);
+        let mut random = ItemRng::new(PLACES, number as u64);
         for dof in [Dof::TX, Dof::TY, Dof::TZ] {
             pose[dof] = random.between(-15.0, 15.0);
         }
         let scale = random.between(0.85, 1.15);
         let hand = lab.hand.varied(|| scale);
-        let damage = Damage {
-            hands: Hands::Each { spread: 0.1 },
+        let damage = Augmentation {
+            hands: ShapeVariation::Each { spread: 0.1 },
             camera_roll: 20_f64.to_radians(),
-            ..Damage::NONE
+            ..Augmentation::NONE
         };
         damage.scene(&lab.rig, &hand, pose, DAMAGES, number)
     }

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use clap::ValueEnum;
 use glam::{DAffine3, DQuat};
 use image::{GrayImage, RgbImage};
-use phalanx::{ItemRandom, PoseContexts, Scene, describe_each, descriptors, draw_silhouette};
+use phalanx::{ItemRng, PoseContexts, Scene, describe_each, descriptors, draw_silhouette};
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{HandShape, Pose};
 use phalanx_multiview::Vocabulary;
@@ -118,7 +118,7 @@ fn queries(rig: &Rig, hand: &HandShape) -> Vec<Scene> {
     let at_roll = |roll: i32| {
         NAMED.iter().enumerate().flat_map(move |(class, posture)| {
             (0..HANDS).map(move |number| {
-                let mut random = ItemRandom::new(2, (class * HANDS + number) as u64);
+                let mut random = ItemRng::new(2, (class * HANDS + number) as u64);
                 let hand = hand.varied(|| random.between(1.0 - SPREAD, 1.0 + SPREAD));
                 let pose = posture.held(HELD_WITHIN_DEG, &mut random);
                 let mut scene = Scene::nominal(rig, &hand, pose);

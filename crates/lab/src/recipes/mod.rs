@@ -5,7 +5,7 @@ pub(crate) mod preset_name;
 pub(crate) mod train;
 
 use anyhow::Result;
-use phalanx::{Estimator, Progress, Scenes, Shard, Training};
+use phalanx::{Estimator, Progress, SceneSource, Shard, Training};
 
 use crate::data::sets::Set;
 

@@ -11,7 +11,7 @@ use crate::features::descriptor::describe_scenes;
 use crate::global_pose::PLACED;
 use crate::losses::Losses;
 use crate::progress::Progress;
-use crate::synthesis::scene::Scenes;
+use crate::synthesis::scene::SceneSource;
 use crate::training::recipe::targets;
 use crate::window::Framing;
 
@@ -39,7 +39,7 @@ impl Estimator {
     ///
     /// # Errors
     /// A camera that cannot draw; no scene, or more than [`Losses::MOST`] that cannot be described.
-    pub fn learn_errors(self, scenes: &dyn Scenes, progress: &dyn Progress) -> Result<Self> {
+    pub fn learn_errors(self, scenes: &dyn SceneSource, progress: &dyn Progress) -> Result<Self> {
         progress.begin("learn what is left open", scenes.count());
         let all: Vec<usize> = (0..scenes.count()).collect();
         let described = describe_scenes(self.rig(), scenes, &all, self.descriptor(), progress)?;

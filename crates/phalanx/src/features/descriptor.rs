@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::features::describer::{Describer, OrientationRule, ViewConfig};
 use crate::features::occupancy::{OCCUPANCY, occupancy_into};
 use crate::progress::Progress;
-use crate::synthesis::scene::Scenes;
+use crate::synthesis::scene::SceneSource;
 use crate::synthesis::scene_describer::SceneDescriber;
 
 /// What a regressor reads of the silhouettes: codes of their shape contexts, view by view, and then
@@ -145,7 +145,7 @@ impl Descriptor {
 /// A camera that cannot draw at all; of each scene, that a camera cannot see or describe it.
 pub fn describe_scenes(
     rig: &Rig,
-    scenes: &dyn Scenes,
+    scenes: &dyn SceneSource,
     numbers: &[usize],
     descriptor: &Descriptor,
     progress: &dyn Progress,

@@ -5,7 +5,7 @@ use phalanx_hand::{Digit, Dof, HandShape, Pose, Side, coupled_pose};
 use phalanx_refine::PosePrior;
 
 use crate::localize::Placement;
-use crate::{ItemRandom, Result};
+use crate::{ItemRng, Result};
 
 /// Poses from the coupled prior that tell how angles go together.
 const POSTURES: u64 = 2000;
@@ -21,7 +21,7 @@ const RANGE: f64 = 6.0;
 /// nothing of where it is.
 pub(super) fn pose_prior() -> Result<PosePrior> {
     let pose = |item| {
-        let mut random = ItemRandom::new(0, item);
+        let mut random = ItemRng::new(0, item);
         coupled_pose(|| random.uniform())
     };
     let postures: Vec<Pose> = (0..POSTURES).map(pose).collect();

@@ -9,27 +9,27 @@ use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{HandShape, Pose};
 use serde::{Deserialize, Serialize};
 
-use crate::synthesis::rng::ItemRandom;
-use crate::synthesis::scene::{Scene, View};
+use crate::synthesis::rng::ItemRng;
+use crate::synthesis::scene::{Scene, SceneView};
 
 /// How scenes differ from what the rig is made for. Each field that is zero leaves its part of the
 /// scene as it is. Angles are radians.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Damage {
+pub struct Augmentation {
     /// Whose hands are seen.
-    pub hands: Hands,
+    pub hands: ShapeVariation,
     /// Each camera is turned about the middle of the volume, on an axis that is uniform on the
     /// sphere, by an angle uniform in this range: it stands elsewhere and looks from there.
     pub camera_turn: RangeInclusive<f64>,
     /// Each camera is rolled about its optical axis by an angle uniform within ± this.
     pub camera_roll: f64,
     /// What happens to the silhouettes' borders.
-    pub border: Border,
+    pub mask_noise: MaskNoise,
 }
 
 /// Whose hands are seen.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum Hands {
+pub enum ShapeVariation {
     /// The hand that was given.
     Given,
     /// So many hands in turn, in each of which every bone and radius of the given one is multiplied
@@ -49,40 +49,40 @@ pub enum Hands {
 
 /// What happens to the silhouettes' borders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Border {
+pub enum MaskNoise {
     /// Nothing.
-    Clean,
+    None,
     /// Eroded, kept or dilated by one pixel with equal chance; then 15 % of the pixels on either
     /// side of the border flip, and 0.2 % of all pixels. Describing cleans it up again, as it
     /// does a photograph's mask.
-    Ragged,
+    Boundary,
 }
 
 /// What estimators are meant to stand: a hand of its own for every scene, its bones and radii within
 /// 10 % of the given one's, as far as adults' differ; cameras turned by up to 3°, as far as a tripod that
 /// was touched; ragged silhouettes.
-impl Default for Damage {
+impl Default for Augmentation {
     fn default() -> Self {
         Self {
-            hands: Hands::Each { spread: 0.1 },
+            hands: ShapeVariation::Each { spread: 0.1 },
             camera_turn: 0.0..=3.0_f64.to_radians(),
             camera_roll: 0.0,
-            border: Border::Ragged,
+            mask_noise: MaskNoise::Boundary,
         }
     }
 }
 
-impl Damage {
+impl Augmentation {
     /// Nothing is damaged.
     pub const NONE: Self = Self {
-        hands: Hands::Given,
+        hands: ShapeVariation::Given,
         camera_turn: 0.0..=0.0,
         camera_roll: 0.0,
-        border: Border::Clean,
+        mask_noise: MaskNoise::None,
     };
 
     /// A pose of a hand as the damaged rig sees it: the scene of this number in the run with this
-    /// seed. [`Scenes`](crate::Scenes) of it are described like any others.
+    /// seed. [`SceneSource`](crate::SceneSource) of it are described like any others.
     pub fn scene(
         &self,
         rig: &Rig,
@@ -91,7 +91,7 @@ impl Damage {
         seed: u64,
         number: usize,
     ) -> Scene {
-        let mut random = ItemRandom::new(seed, number as u64);
+        let mut random = ItemRng::new(seed, number as u64);
         let rest = rig.volume.rest_frame();
         let hand = self.hand(hand, seed, number);
         let view = |camera: &Camera| {
@@ -106,9 +106,9 @@ impl Damage {
                 random.between(-self.camera_roll, self.camera_roll),
             );
             let ragged = random.seed();
-            View {
+            SceneView {
                 rest: roll * turn * rest,
-                ragged: (self.border == Border::Ragged).then_some(ragged),
+                ragged: (self.mask_noise == MaskNoise::Boundary).then_some(ragged),
             }
         };
         Scene { pose, hand, views: rig.cameras.iter().map(view).collect() }
@@ -119,13 +119,13 @@ impl Damage {
         // Hands and scenes have seeds apart: the eight hands are not those of the first eight
         // scenes' own.
         let varied = |hand: usize, spread: f64| {
-            let mut random = ItemRandom::new(!seed, hand as u64);
+            let mut random = ItemRng::new(!seed, hand as u64);
             given.varied(|| random.between(1.0 - spread, 1.0 + spread))
         };
         match self.hands {
-            Hands::Given => given.clone(),
-            Hands::Several { count, spread } => varied(number % count.max(1), spread),
-            Hands::Each { spread } => varied(number, spread),
+            ShapeVariation::Given => given.clone(),
+            ShapeVariation::Several { count, spread } => varied(number % count.max(1), spread),
+            ShapeVariation::Each { spread } => varied(number, spread),
         }
     }
 }
@@ -149,11 +149,11 @@ fn around(pixels: &[u8], width: usize, pick: impl Fn(u8, u8) -> u8) -> Vec<u8> {
     all
 }
 
-/// Makes a silhouette [`Border::Ragged`].
+/// Makes a silhouette [`MaskNoise::Boundary`].
 pub(crate) fn make_ragged(mask: &mut GrayImage, seed: u64) {
     const IN_BAND: f64 = 0.15;
     const ANYWHERE: f64 = 0.002;
-    let mut random = ItemRandom::new(seed, 0);
+    let mut random = ItemRng::new(seed, 0);
     let width = mask.width() as usize;
     let moved = match random.below(3) {
         0 => around(mask, width, u8::min),
@@ -184,7 +184,7 @@ mod tests {
             places.map(|(x, y)| mask.get_pixel(x, y).0[0] > 127).collect()
         };
         let level = |hand: bool| Luma([if hand { 255 } else { 0 }]);
-        let mut random = ItemRandom::new(seed, 0);
+        let mut random = ItemRng::new(seed, 0);
         let choice = random.below(3);
         let moved = GrayImage::from_fn(width, height, |x, y| match choice {
             0 => level(around(mask, x, y).iter().all(|&hand| hand)),
@@ -204,7 +204,7 @@ mod tests {
     fn borders_are_ragged_as_pixel_by_pixel() {
         for (width, height) in [(1, 1), (1, 7), (9, 1), (2, 2), (31, 17)] {
             for seed in 0..12 {
-                let mut random = ItemRandom::new(7, seed);
+                let mut random = ItemRng::new(7, seed);
                 let levels = [0, 100, 127, 128, 200, 255];
                 let patches: Vec<u8> = (0..80).map(|_| levels[random.below(6)]).collect();
                 let patch = |x: u32, y: u32| patches[(x / 4 + 8 * (y / 4)) as usize];

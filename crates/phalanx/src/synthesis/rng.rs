@@ -7,9 +7,9 @@ use rand_pcg::Pcg64Mcg;
 /// The random numbers of one item (a sample, a hand, a picture) of a run: they follow from the
 /// run's seed and the item's number alone, so that no order of work changes them.
 #[derive(Debug, Clone)]
-pub struct ItemRandom(Pcg64Mcg);
+pub struct ItemRng(Pcg64Mcg);
 
-impl ItemRandom {
+impl ItemRng {
     /// Of this item of the run with this seed.
     pub fn new(seed: u64, item: u64) -> Self {
         Self(Pcg64Mcg::seed_from_u64(mixed(mixed(seed) ^ item)))

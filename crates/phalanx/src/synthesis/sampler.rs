@@ -7,9 +7,9 @@ use phalanx_hand::{Dof, HandShape, Pose, coupled_pose};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::synthesis::augmentation::Damage;
-use crate::synthesis::rng::ItemRandom;
-use crate::synthesis::scene::{Scene, Scenes};
+use crate::synthesis::augmentation::Augmentation;
+use crate::synthesis::rng::ItemRng;
+use crate::synthesis::scene::{Scene, SceneSource};
 use crate::window::Framing;
 
 /// How far the arm of a hand anywhere leans in θ_X and in θ_Y, degrees: a person who sits or stands
@@ -49,7 +49,7 @@ impl PoseSource {
 /// always the same, so that a larger run begins with a smaller one.
 ///
 /// ```
-/// use phalanx::{PoseSource, SceneSampler, Scenes};
+/// use phalanx::{PoseSource, SceneSampler, SceneSource};
 /// use phalanx_camera::Rig;
 /// use phalanx_hand::HandShape;
 ///
@@ -66,17 +66,17 @@ pub struct SceneSampler {
     /// Where poses come from.
     pub poses: PoseSource,
     /// How hands, cameras and silhouettes differ from what the rig is made for.
-    pub damage: Damage,
+    pub augmentation: Augmentation,
     /// The seed of the poses.
     pub pose_seed: u64,
     /// The seed of the damage.
-    pub damage_seed: u64,
+    pub augmentation_seed: u64,
 }
 
 impl SceneSampler {
     /// Scenes with the damage that estimators are meant to stand, drawn from seed 0.
     pub fn new(poses: PoseSource) -> Self {
-        Self { poses, damage: Damage::default(), pose_seed: 1, damage_seed: 2 }
+        Self { poses, augmentation: Augmentation::default(), pose_seed: 1, augmentation_seed: 2 }
     }
 
     /// The same scenes drawn from another seed. Seeds have no scene in common.
@@ -86,7 +86,7 @@ impl SceneSampler {
         let of = |purpose: u64| u64::from(seed) << 8 | purpose;
         Self {
             pose_seed: of(self.pose_seed & 0xff),
-            damage_seed: of(self.damage_seed & 0xff),
+            augmentation_seed: of(self.augmentation_seed & 0xff),
             ..self
         }
     }
@@ -99,7 +99,7 @@ impl SceneSampler {
         let other = |seed: u64| (seed & !0xff) | (seed & 0xff) + 5;
         Self {
             pose_seed: other(self.pose_seed),
-            damage_seed: other(self.damage_seed),
+            augmentation_seed: other(self.augmentation_seed),
             ..self.clone()
         }
     }
@@ -143,7 +143,7 @@ pub struct SampledScenes<'a> {
 impl SampledScenes<'_> {
     /// The pose of a scene.
     pub fn pose(&self, number: usize) -> Pose {
-        let mut random = ItemRandom::new(self.sampler.pose_seed, number as u64);
+        let mut random = ItemRng::new(self.sampler.pose_seed, number as u64);
         let mut pose = match &self.sampler.poses {
             PoseSource::Centred => coupled_pose(|| random.uniform()),
             PoseSource::Anywhere => self.placed(&mut random),
@@ -170,7 +170,7 @@ impl SampledScenes<'_> {
     }
 
     /// A coupled pose with its wrist anywhere in the working volume, its arm leaning.
-    fn placed(&self, random: &mut ItemRandom) -> Pose {
+    fn placed(&self, random: &mut ItemRng) -> Pose {
         let mut pose = coupled_pose(|| random.uniform());
         let size_mm = self.rig.volume.size;
         for (dof, size) in [Dof::TX, Dof::TY, Dof::TZ].into_iter().zip(size_mm.to_array()) {
@@ -183,14 +183,14 @@ impl SampledScenes<'_> {
     }
 }
 
-impl Scenes for SampledScenes<'_> {
+impl SceneSource for SampledScenes<'_> {
     fn count(&self) -> usize {
         self.count
     }
 
     fn scene(&self, number: usize) -> Scene {
-        let SceneSampler { damage, damage_seed, .. } = self.sampler;
-        damage.scene(self.rig, self.hand, self.pose(number), *damage_seed, number)
+        let SceneSampler { augmentation, augmentation_seed, .. } = self.sampler;
+        augmentation.scene(self.rig, self.hand, self.pose(number), *augmentation_seed, number)
     }
 }
 

@@ -13,12 +13,12 @@ pub struct Scene {
     /// Whose hand it is.
     pub hand: HandShape,
     /// How each camera sees it, in the order of the rig.
-    pub views: Vec<View>,
+    pub views: Vec<SceneView>,
 }
 
 /// How one camera sees a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
+pub struct SceneView {
     /// The hand frame at rest, to the world. A camera that stands elsewhere than its calibration
     /// says sees just what it would see where it should stand, of a hand that is moved the other
     /// way.
@@ -30,13 +30,13 @@ pub struct View {
 impl Scene {
     /// What the rig is made for: the given hand, calibrated cameras, clean silhouettes.
     pub fn nominal(rig: &Rig, hand: &HandShape, pose: Pose) -> Self {
-        let view = View { rest: rig.volume.rest_frame(), ragged: None };
+        let view = SceneView { rest: rig.volume.rest_frame(), ragged: None };
         Self { pose, hand: hand.clone(), views: vec![view; rig.cameras.len()] }
     }
 }
 
 /// Scenes that are made when they are drawn, so that there may be any number of them.
-pub trait Scenes: Sync {
+pub trait SceneSource: Sync {
     /// How many there are.
     fn count(&self) -> usize;
 
@@ -46,7 +46,7 @@ pub trait Scenes: Sync {
 
 /// Poses of one hand as the rig is made for.
 #[derive(Debug, Clone, Copy)]
-pub struct NominalScenes<'a> {
+pub struct FixedPoses<'a> {
     /// The cameras.
     pub rig: &'a Rig,
     /// The hand.
@@ -55,7 +55,7 @@ pub struct NominalScenes<'a> {
     pub poses: &'a [Pose],
 }
 
-impl Scenes for NominalScenes<'_> {
+impl SceneSource for FixedPoses<'_> {
     fn count(&self) -> usize {
         self.poses.len()
     }
@@ -72,13 +72,13 @@ pub(crate) const SUBSET_SEED: u64 = 0;
 /// Some scenes of others, chosen at random and in their order: every n-th of a periodic motion might see
 /// a single phase of it.
 pub struct SceneSubset<'a> {
-    all: &'a dyn Scenes,
+    all: &'a dyn SceneSource,
     numbers: Vec<usize>,
 }
 
 impl<'a> SceneSubset<'a> {
     /// At most `most` of them; a smaller subset is part of a larger one.
-    pub fn new(all: &'a dyn Scenes, most: usize) -> Self {
+    pub fn new(all: &'a dyn SceneSource, most: usize) -> Self {
         Self { all, numbers: random_subset(all.count(), most, SUBSET_SEED) }
     }
 
@@ -88,7 +88,7 @@ impl<'a> SceneSubset<'a> {
     }
 }
 
-impl Scenes for SceneSubset<'_> {
+impl SceneSource for SceneSubset<'_> {
     fn count(&self) -> usize {
         self.numbers.len()
     }

@@ -13,7 +13,7 @@ use crate::features::describer::{Describer, ViewConfig, working_camera};
 use crate::images::picture::Picture;
 use crate::progress::Progress;
 use crate::synthesis::augmentation::make_ragged;
-use crate::synthesis::scene::{Scene, Scenes, View};
+use crate::synthesis::scene::{Scene, SceneSource, SceneView};
 use crate::window::Framing;
 use crate::window::{DrawnView, DrawnWindows};
 
@@ -28,7 +28,7 @@ pub type PoseContexts = Vec<Vec<f32>>;
 /// A camera that cannot draw at all; of each scene, that a camera cannot see or describe it.
 pub fn describe_each(
     rig: &Rig,
-    scenes: &dyn Scenes,
+    scenes: &dyn SceneSource,
     view_config: impl Into<ViewConfig>,
     progress: &dyn Progress,
 ) -> Result<Vec<Result<PoseContexts>>> {
@@ -162,7 +162,7 @@ impl SceneDescriber {
             }
             Framing::Window => {
                 self.check(scene)?;
-                let drawn = |view: &View| DrawnView {
+                let drawn = |view: &SceneView| DrawnView {
                     solids: scene.hand.pose(&scene.pose, &view.rest).primitives,
                     ragged: view.ragged,
                 };

@@ -11,7 +11,7 @@ use crate::features::descriptor::describe_scenes;
 use crate::losses::Losses;
 use crate::progress::Progress;
 use crate::synthesis::sampler::SceneSampler;
-use crate::synthesis::scene::Scenes;
+use crate::synthesis::scene::SceneSource;
 use crate::training::plan::{Basis, described_ones, targets_of};
 use crate::training::recipe::Training;
 use crate::training::shard::{BLOCK, Shard, scenes_of};
@@ -62,7 +62,7 @@ impl Training {
         &self,
         rig: &Rig,
         hand: &HandShape,
-        scenes: &dyn Scenes,
+        scenes: &dyn SceneSource,
         shard: Shard,
         progress: &dyn Progress,
     ) -> Result<Part> {
@@ -215,7 +215,7 @@ mod tests {
 
     use super::*;
     use crate::progress::Silent;
-    use crate::synthesis::scene::NominalScenes;
+    use crate::synthesis::scene::FixedPoses;
     use crate::training::plan::Reading;
     use crate::training::regressor::Regressor;
 
@@ -234,7 +234,7 @@ mod tests {
             Training { regressor: Regressor::Ridge(Ridge::default()), ..Training::default() };
         training.vocabulary.centres = 10;
         training.vocabulary.most_samples = 500;
-        let scenes = NominalScenes { rig: &rig, hand: &hand, poses: &poses };
+        let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
         training.shard(&rig, &hand, &scenes, Shard::WHOLE, &Silent).unwrap()
     }
 

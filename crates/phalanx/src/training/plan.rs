@@ -12,7 +12,7 @@ use crate::features::descriptor::{Descriptor, describe_scenes};
 use crate::losses::Losses;
 use crate::progress::Progress;
 use crate::synthesis::scene::SUBSET_SEED;
-use crate::synthesis::scene::{SceneSubset, Scenes};
+use crate::synthesis::scene::{SceneSource, SceneSubset};
 use crate::synthesis::scene_describer::describe_each;
 use crate::training::recipe::{Training, targets};
 use crate::training::regressor::{Kept, Regressor, columns_of};
@@ -48,7 +48,7 @@ impl Training {
         &self,
         rig: &Rig,
         hand: &HandShape,
-        scenes: &dyn Scenes,
+        scenes: &dyn SceneSource,
         progress: &dyn Progress,
     ) -> Result<Basis> {
         self.regressor.check_samples(scenes.count(), self.least_dim(rig.cameras.len()))?;
@@ -178,7 +178,7 @@ pub(crate) fn described_ones(
     (kept.into_iter().map(|(number, _)| number).collect(), x)
 }
 
-pub(crate) fn targets_of(scenes: &dyn Scenes, numbers: &[usize]) -> Mat<f64> {
+pub(crate) fn targets_of(scenes: &dyn SceneSource, numbers: &[usize]) -> Mat<f64> {
     let poses: Vec<_> = numbers.iter().map(|&number| scenes.scene(number).pose).collect();
     targets(&poses)
 }

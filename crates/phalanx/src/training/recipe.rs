@@ -12,7 +12,7 @@ use crate::estimator::estimate::Estimator;
 use crate::features::describer::{OrientationRule, ViewConfig};
 use crate::features::descriptor::{Descriptor, ExtraFeatures};
 use crate::progress::Progress;
-use crate::synthesis::scene::NominalScenes;
+use crate::synthesis::scene::FixedPoses;
 use crate::synthesis::scene_describer::PoseContexts;
 use crate::training::regressor::Regressor;
 use crate::training::shard::Shard;
@@ -86,7 +86,7 @@ impl Training {
         if poses.len() < 2 {
             return Err(Error::TooFewPoses { found: poses.len() });
         }
-        let scenes = NominalScenes { rig, hand, poses };
+        let scenes = FixedPoses { rig, hand, poses };
         let part = self.shard(rig, hand, &scenes, Shard::WHOLE, progress)?;
         if let Some((pose, reason)) = part.losses().first() {
             return Err(Error::LostPose { pose, reason: reason.to_owned() });

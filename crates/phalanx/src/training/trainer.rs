@@ -6,7 +6,7 @@ use phalanx_hand::{HandShape, Pose};
 use crate::error::Result;
 use crate::estimator::estimate::Estimator;
 use crate::progress::Progress;
-use crate::synthesis::augmentation::Damage;
+use crate::synthesis::augmentation::Augmentation;
 use crate::synthesis::sampler::{PoseSource, SceneSampler};
 use crate::training::partial::{ErrorScenes, Part};
 use crate::training::preset::Preset;
@@ -31,7 +31,7 @@ use crate::window::Framing;
 pub struct Trainer {
     training: Training,
     poses: Option<PoseSource>,
-    damage: Damage,
+    augmentation: Augmentation,
     samples: usize,
     error_samples: usize,
     seed: u32,
@@ -50,7 +50,7 @@ impl Trainer {
     /// Scenes that the error model is fitted to.
     pub const ERROR_SAMPLES: usize = 4000;
 
-    /// As a preset says: whole pictures, random poses with every [`Damage`], an error model.
+    /// As a preset says: whole pictures, random poses with every [`Augmentation`], an error model.
     pub fn preset(preset: Preset) -> Self {
         Self::new(preset.training(), preset.scenes())
     }
@@ -60,7 +60,7 @@ impl Trainer {
         Self {
             training,
             poses: None,
-            damage: Damage::default(),
+            augmentation: Augmentation::default(),
             samples,
             error_samples: Self::ERROR_SAMPLES,
             seed: 0,
@@ -105,8 +105,8 @@ impl Trainer {
 
     /// How scenes differ from what the rig is made for.
     #[must_use]
-    pub fn damage(mut self, damage: Damage) -> Self {
-        self.damage = damage;
+    pub fn augmentation(mut self, augmentation: Augmentation) -> Self {
+        self.augmentation = augmentation;
         self
     }
 
@@ -127,7 +127,7 @@ impl Trainer {
         let framing = self.training.framing;
         let poses = self.poses.clone().unwrap_or_else(|| PoseSource::for_framing(framing));
         let sampler = SceneSampler::new(poses).with_seed(self.seed);
-        SceneSampler { damage: self.damage.clone(), ..sampler }
+        SceneSampler { augmentation: self.augmentation.clone(), ..sampler }
     }
 
     /// What training through so many views takes in one run.

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use image::GrayImage;
 use phalanx::{
-    Border, Damage, Hands, NominalScenes, OrientationRule, Scene, SceneDescriber, Scenes,
-    draw_silhouette,
+    Augmentation, FixedPoses, MaskNoise, OrientationRule, Scene, SceneDescriber, SceneSource,
+    ShapeVariation, draw_silhouette,
 };
 use phalanx_camera::{Camera, Extrinsics};
 use phalanx_hand::{HandShape, Pose};
@@ -22,14 +22,14 @@ fn overlap(a: &GrayImage, b: &GrayImage) -> f64 {
     both as f64 / pixels().filter(|&(a, b)| a || b).count() as f64
 }
 
-fn scene(damage: &Damage, number: usize) -> Scene {
+fn scene(damage: &Augmentation, number: usize) -> Scene {
     damage.scene(&desk(), &HandShape::adult(), unseen()[0], 7, number)
 }
 
 #[test]
 fn without_damage_a_scene_is_nominal() {
     let nominal = Scene::nominal(&desk(), &HandShape::adult(), unseen()[0]);
-    let undamaged = scene(&Damage::NONE, 3);
+    let undamaged = scene(&Augmentation::NONE, 3);
     assert_eq!(undamaged.hand, nominal.hand);
     assert_eq!(undamaged.pose, nominal.pose);
     for (a, b) in masks(&undamaged).iter().zip(masks(&nominal)) {
@@ -40,7 +40,7 @@ fn without_damage_a_scene_is_nominal() {
 /// A moved camera, drawn with its own extrinsics, sees what the scene says that it sees.
 #[test]
 fn a_turned_camera_sees_the_hand_turned_the_other_way() {
-    let damage = Damage { camera_turn: 0.05..=0.05, ..Damage::NONE };
+    let damage = Augmentation { camera_turn: 0.05..=0.05, ..Augmentation::NONE };
     let (rig, turned) = (desk(), scene(&damage, 0));
     for ((camera, view), mask) in rig.cameras.iter().zip(&turned.views).zip(masks(&turned)) {
         let rest = rig.volume.rest_frame();
@@ -65,7 +65,7 @@ fn a_turned_camera_sees_the_hand_turned_the_other_way() {
 
 #[test]
 fn a_rolled_camera_stays_where_it_is_and_looks_where_it_did() {
-    let damage = Damage { camera_roll: 0.5, ..Damage::NONE };
+    let damage = Augmentation { camera_roll: 0.5, ..Augmentation::NONE };
     let rig = desk();
     for (camera, view) in rig.cameras.iter().zip(&scene(&damage, 0).views) {
         let moved = view.rest * rig.volume.rest_frame().inverse();
@@ -77,8 +77,8 @@ fn a_rolled_camera_stays_where_it_is_and_looks_where_it_did() {
 
 #[test]
 fn ragged_borders_are_cleaned_to_nearly_what_they_were() {
-    let damage = Damage { border: Border::Ragged, ..Damage::NONE };
-    let clean = masks(&scene(&Damage::NONE, 0));
+    let damage = Augmentation { mask_noise: MaskNoise::Boundary, ..Augmentation::NONE };
+    let clean = masks(&scene(&Augmentation::NONE, 0));
     let mut least: f64 = 1.0;
     for number in 0..20 {
         for (ragged, clean) in masks(&scene(&damage, number)).iter().zip(&clean) {
@@ -91,7 +91,10 @@ fn ragged_borders_are_cleaned_to_nearly_what_they_were() {
 
 #[test]
 fn eight_hands_take_turns_and_none_is_the_given_one() {
-    let damage = Damage { hands: Hands::Several { count: 8, spread: 0.1 }, ..Damage::NONE };
+    let damage = Augmentation {
+        hands: ShapeVariation::Several { count: 8, spread: 0.1 },
+        ..Augmentation::NONE
+    };
     let hands: Vec<HandShape> = (0..16).map(|number| scene(&damage, number).hand).collect();
     assert_eq!(hands[..8], hands[8..]);
     for (k, hand) in hands[..8].iter().enumerate() {
@@ -102,11 +105,11 @@ fn eight_hands_take_turns_and_none_is_the_given_one() {
 
 #[test]
 fn a_scene_depends_on_its_number_and_the_seed_alone() {
-    let damage = Damage {
-        hands: Hands::Each { spread: 0.1 },
+    let damage = Augmentation {
+        hands: ShapeVariation::Each { spread: 0.1 },
         camera_turn: 0.0..=0.05,
         camera_roll: 0.5,
-        border: Border::Ragged,
+        mask_noise: MaskNoise::Boundary,
     };
     assert_eq!(scene(&damage, 5), scene(&damage, 5));
     assert_ne!(scene(&damage, 5), scene(&damage, 6));
@@ -117,7 +120,7 @@ fn a_scene_depends_on_its_number_and_the_seed_alone() {
 #[test]
 fn nominal_scenes_are_the_poses() {
     let (rig, hand, poses) = (desk(), HandShape::adult(), [Pose::REST, unseen()[0]]);
-    let scenes = NominalScenes { rig: &rig, hand: &hand, poses: &poses };
+    let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
     assert_eq!(scenes.count(), 2);
     assert_eq!(scenes.scene(1).pose, unseen()[0]);
 }

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use phalanx::{Error, Estimator, NominalScenes, Picture, Refiner, Silent, Workspace};
+use phalanx::{Error, Estimator, FixedPoses, Picture, Refiner, Silent, Workspace};
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::Refinement;
 
@@ -16,7 +16,7 @@ fn between() -> Vec<Pose> {
 
 fn learn() -> phalanx::Result<Estimator> {
     let (rig, hand, poses) = (top(), HandShape::adult(), between());
-    let scenes = NominalScenes { rig: &rig, hand: &hand, poses: &poses };
+    let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
     FROM_TOP.clone().learn_errors(&scenes, &Silent)
 }
 
@@ -96,7 +96,7 @@ fn what_cannot_be_answered_is_named() {
         assert!(matches!(LEARNT.hypotheses(&estimate, most), Err(Error::Regression(_))));
     }
     let (rig, hand) = (top(), HandShape::adult());
-    let none = NominalScenes { rig: &rig, hand: &hand, poses: &[] };
+    let none = FixedPoses { rig: &rig, hand: &hand, poses: &[] };
     let error = FROM_TOP.clone().learn_errors(&none, &Silent).unwrap_err();
     assert!(matches!(error, Error::TooFewPoses { found: 0 }), "{error}");
 }

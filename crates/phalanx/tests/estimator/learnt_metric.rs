@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use phalanx::{
-    Encoding, Estimator, LearntMetric, NominalScenes, Preset, Regression, Regressor, Shard, Silent,
+    Encoding, Estimator, FixedPoses, LearntMetric, Preset, Regression, Regressor, Shard, Silent,
     Training,
 };
 use phalanx_hand::HandShape;
@@ -58,7 +58,7 @@ fn what_is_saved_is_loaded_and_a_cut_payload_refused() {
 #[test]
 fn a_part_is_saved_and_loaded_and_finishes_to_the_same() {
     let (rig, hand, poses) = (top(), HandShape::adult(), poses());
-    let scenes = NominalScenes { rig: &rig, hand: &hand, poses: &poses };
+    let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
     let part = training().shard(&rig, &hand, &scenes, Shard::WHOLE, &Silent).unwrap();
     let read = phalanx::Part::from_bytes(&part.to_bytes().unwrap()).unwrap();
     assert_eq!(read, part);

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use phalanx::{
-    Error, Estimator, NetworkTraining, NominalScenes, Part, Preset, Regression, Regressor, Shard,
+    Error, Estimator, FixedPoses, NetworkTraining, Part, Preset, Regression, Regressor, Shard,
     Silent, Training,
 };
 use phalanx_hand::{HandShape, Pose};
@@ -45,7 +45,7 @@ fn hasty() -> Training {
 fn part(shard: Shard) -> Part {
     let (rig, hand) = (top(), HandShape::adult());
     let poses: Vec<Pose> = poses().into_iter().cycle().take(1030).collect();
-    let scenes = NominalScenes { rig: &rig, hand: &hand, poses: &poses };
+    let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
     hasty().shard(&rig, &hand, &scenes, shard, &Silent).unwrap()
 }
 

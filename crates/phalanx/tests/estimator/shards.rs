@@ -1,8 +1,8 @@
 //! Training in shards: the same bytes however it is cut, and clear refusals.
 
 use phalanx::{
-    Damage, Error, LossReason, OrientationRule, Part, Regressor, Scene, SceneSubset, Scenes, Shard,
-    Silent, Trainer, Training,
+    Augmentation, Error, LossReason, OrientationRule, Part, Regressor, Scene, SceneSource,
+    SceneSubset, Shard, Silent, Trainer, Training,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, coupled_pose};
@@ -32,15 +32,15 @@ impl Random {
     }
 }
 
-impl Scenes for Random {
+impl SceneSource for Random {
     fn count(&self) -> usize {
         self.count
     }
 
     fn scene(&self, number: usize) -> Scene {
-        let mut random = phalanx::ItemRandom::new(1, number as u64);
+        let mut random = phalanx::ItemRng::new(1, number as u64);
         let pose = coupled_pose(|| random.uniform());
-        Damage::NONE.scene(&self.rig, &self.hand, pose, 2, number)
+        Augmentation::NONE.scene(&self.rig, &self.hand, pose, 2, number)
     }
 }
 
@@ -140,7 +140,7 @@ fn what_keeps_its_samples_learns_in_shards_too() {
 /// Motion in cycles: every second pose is turned.
 struct Cycles(Random);
 
-impl Scenes for Cycles {
+impl SceneSource for Cycles {
     fn count(&self) -> usize {
         self.0.count
     }
@@ -202,7 +202,7 @@ struct OutOfSight {
     every: usize,
 }
 
-impl Scenes for OutOfSight {
+impl SceneSource for OutOfSight {
     fn count(&self) -> usize {
         self.all.count
     }

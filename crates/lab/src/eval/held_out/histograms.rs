@@ -1,6 +1,6 @@
 //! Scenes to descriptors, without keeping the shape contexts in between.
 
-use phalanx::{Error, Progress, Result, SceneDescriber, Scenes, ViewConfig};
+use phalanx::{Error, Progress, Result, SceneDescriber, SceneSource, ViewConfig};
 use phalanx_camera::Rig;
 use phalanx_multiview::{Concatenation, Scratch};
 use rayon::prelude::*;
@@ -43,7 +43,7 @@ impl ViewCodebooks {
 /// A camera that cannot draw at all; of each scene, that a camera cannot see or describe it.
 pub(crate) fn describe_with(
     rig: &Rig,
-    scenes: &dyn Scenes,
+    scenes: &dyn SceneSource,
     numbers: &[usize],
     view_config: impl Into<ViewConfig>,
     codebooks: &[ViewCodebooks],

@@ -3,7 +3,8 @@
 use anyhow::{Context, Result};
 use faer::Mat;
 use phalanx::{
-    OrientationRule, PoseContexts, Progress, SceneSubset, Scenes, Training, describe_each, targets,
+    OrientationRule, PoseContexts, Progress, SceneSource, SceneSubset, Training, describe_each,
+    targets,
 };
 use phalanx_hand::Pose;
 use phalanx_multiview::Vocabulary;

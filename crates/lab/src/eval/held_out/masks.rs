@@ -115,7 +115,7 @@ fn describe(
 mod tests {
     use std::path::PathBuf;
 
-    use phalanx::{OrientationRule, SceneDescriber, Scenes, draw_silhouette};
+    use phalanx::{OrientationRule, SceneDescriber, SceneSource, draw_silhouette};
     use phalanx_hand::{Dof, write_poses};
 
     use super::*;

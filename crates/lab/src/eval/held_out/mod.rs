@@ -17,7 +17,7 @@ use std::process::ExitCode;
 
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
-use phalanx::{Framing, OrientationRule, Progress, Scenes};
+use phalanx::{Framing, OrientationRule, Progress, SceneSource};
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 use serde::Serialize;

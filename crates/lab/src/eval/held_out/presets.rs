@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use faer::Mat;
 use image::GrayImage;
 use phalanx::{
-    Estimator, Framing, Picture, Preset, Progress, Refiner, SceneDescriber, Scenes, Training,
+    Estimator, Framing, Picture, Preset, Progress, Refiner, SceneDescriber, SceneSource, Training,
     Workspace, targets,
 };
 use phalanx_hand::{Dof, Pose};

@@ -1,7 +1,7 @@
 //! The default preset's estimates, refined: with the hand as given, and after calibrating it.
 
 use anyhow::Result;
-use phalanx::{Estimate, Estimator, Progress, Refiner, SceneDescriber, Scenes, Workspace};
+use phalanx::{Estimate, Estimator, Progress, Refiner, SceneDescriber, SceneSource, Workspace};
 use phalanx_hand::Pose;
 use phalanx_refine::{
     Calibration, CalibrationFrame, CameraDoubt, Doubt, HandDoubt, Moves, Refinement,

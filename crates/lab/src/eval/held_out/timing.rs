@@ -2,7 +2,7 @@
 
 use anyhow::{Result, ensure};
 use faer::Mat;
-use phalanx::{Describer, SceneDescriber, Scenes};
+use phalanx::{Describer, SceneDescriber, SceneSource};
 use phalanx_multiview::Scratch;
 use phalanx_segmentation::Silhouette;
 

@@ -7,8 +7,8 @@ use anyhow::Result;
 use faer::Mat;
 use image::RgbImage;
 use phalanx::{
-    Estimator, Framing, Observation, Progress, Refiner, Regressor, SceneSubset, Scenes, Training,
-    Workspace, describe_scenes, targets,
+    Estimator, Framing, Observation, Progress, Refiner, Regressor, SceneSource, SceneSubset,
+    Training, Workspace, describe_scenes, targets,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
