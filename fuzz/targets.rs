@@ -3,7 +3,7 @@
 
 use glam::DAffine3;
 use image::GrayImage;
-use phalanx::{Error, Estimator, Part, decode_picture};
+use phalanx::{Error, Estimator, PartialTraining, decode_picture};
 use phalanx_camera::Rig;
 use phalanx_codebook::{AnyCoding, Coding, Scratch};
 use phalanx_hand::{HandShape, Pose, PoseTable};
@@ -44,8 +44,10 @@ pub(crate) fn model(data: &[u8]) {
 
 /// The same of a part of a training.
 pub(crate) fn part(data: &[u8]) {
-    let _ = Part::from_bytes(data);
-    if let Ok(part) = Part::from_bytes(&sealed(*b"PHXPART\0", Part::from_bytes, data)) {
+    let _ = PartialTraining::from_bytes(data);
+    if let Ok(part) =
+        PartialTraining::from_bytes(&sealed(*b"PHXPART\0", PartialTraining::from_bytes, data))
+    {
         part.to_bytes().expect("what was read can be written");
     }
 }

@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
-use phalanx::{Cost, Estimator, Framing, Losses, Part, Preset, Progress, Shard, Trainer};
+use phalanx::{
+    Cost, Estimator, Framing, Losses, PartialTraining, Preset, Progress, Shard, Trainer,
+};
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose, PoseTable};
 
@@ -145,10 +147,11 @@ pub(crate) fn train(arguments: &Arguments) -> Result<()> {
 }
 
 pub(crate) fn merge(arguments: &MergeArguments) -> Result<()> {
-    let mut merged: Option<Part> = None;
+    let mut merged: Option<PartialTraining> = None;
     for path in &arguments.parts {
         let name = || path.display().to_string();
-        let part = Part::from_bytes(&std::fs::read(path).with_context(name)?).with_context(name)?;
+        let part = PartialTraining::from_bytes(&std::fs::read(path).with_context(name)?)
+            .with_context(name)?;
         match &mut merged {
             None => merged = Some(part),
             Some(merged) => merged.merge(part).with_context(name)?,

@@ -5,8 +5,8 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use image::{GrayImage, RgbImage};
 use phalanx::{
-    Estimator, FixedPoses, OrientationRule, Picture, Regressor, Segmenter, Silent, Training,
-    Workspace, describe_each,
+    Estimator, FixedPoses, NoProgress, OrientationRule, Picture, RegressorConfig, Segmenter,
+    Training, Workspace, describe_each,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
@@ -52,9 +52,9 @@ impl TrainingSet {
         Self { rig, hand, poses: (0..SAMPLES).map(pose).collect() }
     }
 
-    fn estimator(&self, regressor: Regressor) -> Estimator {
+    fn estimator(&self, regressor: RegressorConfig) -> Estimator {
         let training = Training { regressor, ..Training::default() };
-        training.run(&self.rig, &self.hand, &self.poses, &Silent).expect("a good training set")
+        training.run(&self.rig, &self.hand, &self.poses, &NoProgress).expect("a good training set")
     }
 }
 
@@ -78,7 +78,7 @@ fn estimate(c: &mut Criterion) {
     let photographs: Vec<Picture> =
         photographs.iter().map(|image| Picture::Photograph(image, &skin)).collect();
     let masks: Vec<Picture> = masks.iter().map(Picture::Mask).collect();
-    let both = Regressor::Cascade(TwoStageSelection {
+    let both = RegressorConfig::Cascade(TwoStageSelection {
         features: Stop::Count(34),
         samples: Stop::Count(38),
         ..TwoStageSelection::default()
@@ -100,7 +100,8 @@ fn training(c: &mut Criterion) {
     c.bench_function("draw and describe ten poses in three views", |b| {
         b.iter(|| {
             let scenes = FixedPoses { rig: &rig, hand: &hand, poses: black_box(&poses) };
-            describe_each(&rig, &scenes, OrientationRule::default(), &Silent).expect("cameras draw")
+            describe_each(&rig, &scenes, OrientationRule::default(), &NoProgress)
+                .expect("cameras draw")
         });
     });
 }

@@ -4,7 +4,7 @@
 use std::error::Error;
 
 use phalanx::{
-    Augmentation, ItemRng, Preset, Refiner, Scene, SceneDescriber, SceneSource, Shard, Silent,
+    Augmentation, ItemRng, NoProgress, Preset, Refiner, Scene, SceneDescriber, SceneSource, Shard,
     Workspace,
 };
 use phalanx_camera::Rig;
@@ -40,8 +40,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let hand = HandShape::adult();
     let scenes = |seed, count| AnyMotion { rig: &rig, hand: &hand, seed, count };
     let training = Preset::Fast.training();
-    let learnt = training.shard(&rig, &hand, &scenes(1, LEARNT_FROM), Shard::WHOLE, &Silent)?;
-    let estimator = learnt.finish(&Silent)?;
+    let learnt = training.shard(&rig, &hand, &scenes(1, LEARNT_FROM), Shard::WHOLE, &NoProgress)?;
+    let estimator = learnt.finish(&NoProgress)?;
     let refiner = Refiner::for_estimator(&estimator, Refinement::default())?;
 
     let mut describer = SceneDescriber::new(&rig, estimator.descriptor().view_config())?;

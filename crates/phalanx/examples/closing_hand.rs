@@ -3,7 +3,7 @@
 
 use std::error::Error;
 
-use phalanx::{Picture, Segmenter, Silent, Training, Workspace};
+use phalanx::{NoProgress, Picture, Segmenter, Training, Workspace};
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_render::{Appearance, Renderer};
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let poses: Vec<Pose> = stages
         .flat_map(|closed| [0.0, 20.0, 40.0, 60.0].map(|theta_z| closing(closed, theta_z)))
         .collect();
-    let estimator = Training::default().run(&rig, &hand, &poses, &Silent)?;
+    let estimator = Training::default().run(&rig, &hand, &poses, &NoProgress)?;
     println!(
         "learnt from {} poses; the model takes {} bytes",
         poses.len(),

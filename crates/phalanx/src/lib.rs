@@ -23,7 +23,7 @@ pub use error::{Error, Result};
 pub use estimator::error_model::Hypothesis;
 pub use estimator::estimate::{Estimate, Estimator, Workspace};
 pub use estimator::observation::{Observation, ObservedView};
-pub use estimator::regression::Regression;
+pub use estimator::regression::FittedRegressor;
 pub use features::describer::{
     Describer, OrientationRule, ViewConfig, WORKING_SIZE, working_camera,
 };
@@ -38,7 +38,7 @@ pub use images::overlay::{draw_overlay, draw_window_overlay, working_window};
 pub use images::picture::{Picture, Segmenter};
 pub use localize::{Arm, Ball, Detections, HandCrop, Placement, associate};
 pub use losses::{LossReason, Losses};
-pub use progress::{Progress, Silent};
+pub use progress::{NoProgress, Progress};
 pub use refiner::{RefinedEstimate, Refiner};
 pub use synthesis::augmentation::{Augmentation, MaskNoise, ShapeVariation};
 pub use synthesis::rng::ItemRng;
@@ -47,10 +47,10 @@ pub use synthesis::scene::{FixedPoses, Scene, SceneSource, SceneSubset, SceneVie
 pub use synthesis::scene_describer::{
     PoseContexts, SceneDescriber, describe_each, draw_silhouette,
 };
-pub use training::partial::Part;
+pub use training::partial::PartialTraining;
 pub use training::preset::Preset;
 pub use training::recipe::{Encoding, Training, descriptors, targets};
-pub use training::regressor::{LearntMetric, NetworkTraining, Regressor};
+pub use training::regressor::{LearntMetric, NetworkTraining, RegressorConfig};
 pub use training::shard::Shard;
 pub use training::trainer::{Cost, Trainer};
 pub use window::{Framing, Window, WindowFinder};

@@ -14,9 +14,9 @@ pub trait Progress: Sync {
 
 /// Receives progress and tells nobody.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Silent;
+pub struct NoProgress;
 
-impl Progress for Silent {
+impl Progress for NoProgress {
     fn begin(&self, _stage: &str, _items: usize) {}
     fn step(&self) {}
 }

@@ -1,6 +1,6 @@
 //! The estimator of the README's library example is as good as the README says.
 
-use phalanx::{Picture, Preset, Silent, Trainer, Workspace, draw_silhouette};
+use phalanx::{NoProgress, Picture, Preset, Trainer, Workspace, draw_silhouette};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, PoseTable};
 
@@ -23,7 +23,7 @@ fn unseen() -> Vec<Pose> {
 fn the_default_preset_estimates_unseen_motion_as_the_readme_says() {
     let rig = Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap();
     let hand = HandShape::adult();
-    let estimator = Trainer::preset(Preset::Default).fit(&rig, &hand, &Silent).unwrap();
+    let estimator = Trainer::preset(Preset::Default).fit(&rig, &hand, &NoProgress).unwrap();
     assert!(estimator.errors().is_some());
 
     let active: Vec<Dof> =

@@ -3,7 +3,8 @@
 use glam::{DAffine3, DVec3};
 use image::GrayImage;
 use phalanx::{
-    Error, ItemRng, Missing, Silent, TakeFrame, TakeSettings, estimate_volume, fit_frame, fit_take,
+    Error, ItemRng, Missing, NoProgress, TakeFrame, TakeSettings, estimate_volume, fit_frame,
+    fit_take,
 };
 use phalanx_camera::{Camera, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
@@ -71,7 +72,7 @@ fn mean_error(found: &[DVec3; JOINTS], truth: &[DVec3; JOINTS]) -> f64 {
 fn a_take_is_fitted_from_masks_alone() {
     let Drawn { cameras, frames, joints } = drawn(6);
     let settings = TakeSettings::default();
-    let fit = fit_take(&cameras, &frames, &settings, &Silent).expect("a fit");
+    let fit = fit_take(&cameras, &frames, &settings, &NoProgress).expect("a fit");
     let errors: Vec<f64> =
         fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
     let mean = errors.iter().sum::<f64>() / errors.len() as f64;
@@ -104,7 +105,7 @@ fn a_view_that_shows_something_else_is_named_and_does_no_harm() {
         let both = |x, y| if face(x, y) { [255] } else { mask.get_pixel(x, y).0 };
         *mask = GrayImage::from_fn(320, 240, |x, y| image::Luma(both(x, y)));
     }
-    let fit = fit_take(&cameras, &frames, &TakeSettings::default(), &Silent).expect("a fit");
+    let fit = fit_take(&cameras, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
     let named = fit.frames.iter().filter(|fit| fit.views[1].missing == Some(Missing::Disagrees));
     assert!(
         named.count() >= 4,
@@ -120,7 +121,7 @@ fn a_view_that_shows_something_else_is_named_and_does_no_harm() {
 fn a_take_without_a_hand_is_an_error() {
     let cameras = cameras();
     let nothing = TakeFrame { masks: vec![Some(GrayImage::new(320, 240)), None, None] };
-    let fit = fit_take(&cameras, &[nothing], &TakeSettings::default(), &Silent);
+    let fit = fit_take(&cameras, &[nothing], &TakeSettings::default(), &NoProgress);
     assert!(matches!(fit, Err(Error::NoHand)));
     let short = TakeFrame { masks: vec![None] };
     let volume = estimate_volume(&cameras, &[short], &HandShape::adult());

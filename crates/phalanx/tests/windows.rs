@@ -117,7 +117,8 @@ fn window_and_picture_show_the_same_points() {
 #[test]
 fn training_and_use_see_the_same() {
     let (rig, hand) = (rig(), HandShape::adult());
-    let estimator = training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::Silent).unwrap();
+    let estimator =
+        training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
     let read = phalanx::Estimator::from_bytes(&estimator.to_bytes().unwrap()).unwrap();
     assert_eq!(read, estimator);
     assert_eq!(read.descriptor().view_config(), THROUGH_WINDOWS);
@@ -185,7 +186,8 @@ fn a_window_is_drawn_as_the_picture_shows_it() {
 #[test]
 fn hands_are_placed_and_refined_where_they_are() {
     let (rig, hand) = (rig(), HandShape::adult());
-    let estimator = training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::Silent).unwrap();
+    let estimator =
+        training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
     let refiner = Refiner::for_estimator(&estimator, Refinement::default()).unwrap();
     let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
     let mut workspace = Workspace::default();
@@ -265,10 +267,11 @@ fn what_is_beyond_the_picture_is_not_known() {
 #[test]
 fn hypotheses_are_where_the_windows_show_the_hand() {
     let (rig, hand) = (rig(), HandShape::adult());
-    let estimator = training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::Silent).unwrap();
+    let estimator =
+        training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
     let poses = poses();
     let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
-    let estimator = estimator.learn_errors(&scenes, &phalanx::Silent).unwrap();
+    let estimator = estimator.learn_errors(&scenes, &phalanx::NoProgress).unwrap();
     let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
     let mut pose = closing(0.4, 20.0);
     pose[Dof::TY] = 20.0;
@@ -290,7 +293,7 @@ fn whole_pictures_have_no_windows() {
     let (rig, hand) = (rig(), HandShape::adult());
     let mut workspace = Workspace::default();
     let estimator =
-        training(Framing::Picture).run(&rig, &hand, &poses(), &phalanx::Silent).unwrap();
+        training(Framing::Picture).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
     let masks: Vec<GrayImage> =
         rig.cameras.iter().map(|camera| mask(camera, &closing(0.5, 10.0))).collect();
     let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();

@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use std::sync::LazyLock;
 
 use image::DynamicImage;
-use phalanx::{Estimator, Silent, Training, draw_silhouette};
+use phalanx::{Estimator, NoProgress, Training, draw_silhouette};
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_multiview::Vocabulary;
@@ -37,7 +37,7 @@ static MODEL: LazyLock<Vec<u8>> = LazyLock::new(|| {
     vocabulary.clustering.restarts = 1;
     let training = Training { vocabulary, ..Training::default() };
     let poses: Vec<_> = (0..16).map(|k| closing(f64::from(k) / 15.0)).collect();
-    let estimator = training.run(&rig(), &HandShape::adult(), &poses, &Silent);
+    let estimator = training.run(&rig(), &HandShape::adult(), &poses, &NoProgress);
     estimator.and_then(|estimator: Estimator| estimator.to_bytes()).unwrap()
 });
 

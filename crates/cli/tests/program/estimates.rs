@@ -238,7 +238,7 @@ fn an_estimate_that_cannot_be_drawn_is_a_doubt_on_standard_error() {
     let wrist = &mut rig.cameras[1].extrinsics.translation;
     (wrist.x, wrist.z) = (0.0, 60.0);
     let (hand, descriptor) = (model.hand().clone(), model.descriptor().clone());
-    let near = Estimator::from_parts(rig, hand, descriptor, model.regression().clone());
+    let near = Estimator::from_parts(rig, hand, descriptor, model.regressor().clone());
     desk.write("model", &near.unwrap().to_bytes().unwrap());
     let outcome = desk.estimate(&[&MASKS[..], &["--overlay", "seen.png"]].concat());
     assert_eq!((outcome.code, outcome.out.lines().count()), (Some(0), 28));

@@ -4,7 +4,7 @@ use anyhow::Result;
 use clap::Args;
 use comfy_table::{Table, presets};
 use phalanx::{
-    Encoding, Estimator, Framing, OrientationRule, Preset, Progress, Regressor, Training,
+    Encoding, Estimator, Framing, OrientationRule, Preset, Progress, RegressorConfig, Training,
 };
 use phalanx_hand::Pose;
 use phalanx_refine::{Doubt, Refinement};
@@ -131,8 +131,10 @@ fn learnings(samples: usize) -> Vec<(&'static str, Learning)> {
         (
             "2,000 Gaussians, one distance for all",
             training(|own| {
-                if let Regressor::LearntMetric(own_distances) = Preset::Fast.training().regressor {
-                    own.regressor = Regressor::Nystrom(own_distances.regression);
+                if let RegressorConfig::LearntMetric(own_distances) =
+                    Preset::Fast.training().regressor
+                {
+                    own.regressor = RegressorConfig::Nystrom(own_distances.regression);
                 }
             }),
         ),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Args;
-use phalanx::Part;
+use phalanx::PartialTraining;
 
 use crate::progress;
 use crate::recipes::train;
@@ -23,10 +23,11 @@ pub struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let mut merged: Option<Part> = None;
+    let mut merged: Option<PartialTraining> = None;
     for path in &arguments.parts {
         let name = || path.display().to_string();
-        let part = Part::from_bytes(&std::fs::read(path).with_context(name)?).with_context(name)?;
+        let part = PartialTraining::from_bytes(&std::fs::read(path).with_context(name)?)
+            .with_context(name)?;
         match &mut merged {
             None => merged = Some(part),
             Some(merged) => merged.merge(part).with_context(name)?,

@@ -5,7 +5,10 @@ use std::str::FromStr;
 
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
-use phalanx::{Estimator, Framing, Part, Preset, Progress, Regressor, Shard, Trainer, Training};
+use phalanx::{
+    Estimator, Framing, PartialTraining, Preset, Progress, RegressorConfig, Shard, Trainer,
+    Training,
+};
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
 
@@ -98,7 +101,7 @@ const RANDOM_SAMPLES: usize = 20_000;
 
 /// The regressor, with the paper's counts where it selects; dense kernel regression is that of
 /// [`Training`], for pictures that were not drawn.
-fn regressor(method: TableMethod, counts: PaperCounts) -> Regressor {
+fn regressor(method: TableMethod, counts: PaperCounts) -> RegressorConfig {
     match method {
         TableMethod::KernelRidge => Training::default().regressor,
         method => method.regressor(counts).expect("nearest neighbours cannot be asked for"),
@@ -171,7 +174,7 @@ fn by_preset(preset: Preset, arguments: &Arguments, rig: &Rig, hand: &HandShape)
 }
 
 /// Writes the model, or a shard's part.
-fn write(part: Part, arguments: &Arguments, progress: &dyn Progress) -> Result<()> {
+fn write(part: PartialTraining, arguments: &Arguments, progress: &dyn Progress) -> Result<()> {
     if arguments.shard.is_none() {
         let out = arguments.out.as_deref().unwrap_or(MODEL.as_ref());
         return save(&finish(part, arguments.hypotheses, progress)?, out);
@@ -183,7 +186,11 @@ fn write(part: Part, arguments: &Arguments, progress: &dyn Progress) -> Result<(
 }
 
 /// The estimator of a whole training, with a model of its errors if that is asked for.
-pub(crate) fn finish(part: Part, hypotheses: bool, progress: &dyn Progress) -> Result<Estimator> {
+pub(crate) fn finish(
+    part: PartialTraining,
+    hypotheses: bool,
+    progress: &dyn Progress,
+) -> Result<Estimator> {
     Ok(if hypotheses { part } else { part.without_error_model() }.finish(progress)?)
 }
 
@@ -197,8 +204,8 @@ pub(crate) fn save(estimator: &Estimator, out: &Path) -> Result<()> {
         "{}: learnt through {}; reads {} features, {} kernel centres; {} KiB\n",
         out.display(),
         names.join(", "),
-        estimator.regression().features(),
-        estimator.regression().kept_samples(),
+        estimator.regressor().features(),
+        estimator.regressor().kept_samples(),
         bytes.len().div_ceil(1024),
     ))
 }

@@ -61,7 +61,7 @@ impl Estimator {
         let predict = |x: &Vec<f64>| {
             let (mut pose, mut std) = (Pose::REST, [0.0; Dof::COUNT]);
             let mut scratch = phalanx_rvm::Scratch::default();
-            self.regression().predict_into(x, &mut scratch, &mut pose.0, &mut std)?;
+            self.regressor().predict_into(x, &mut scratch, &mut pose.0, &mut std)?;
             Ok(pose)
         };
         let estimates = descriptors.par_iter().map(predict).collect::<Result<Vec<_>>>()?;

@@ -9,7 +9,7 @@ use phalanx_segmentation::Silhouette;
 
 use crate::error::{Error, Result};
 use crate::estimator::observation::{Observation, ObservedView};
-use crate::estimator::regression::Regression;
+use crate::estimator::regression::FittedRegressor;
 use crate::features::describer::OrientationRule;
 use crate::features::descriptor;
 use crate::features::descriptor::Descriptor;
@@ -24,7 +24,7 @@ pub struct Estimator {
     rig: Rig,
     hand: HandShape,
     descriptor: Descriptor,
-    regression: Regression,
+    regression: FittedRegressor,
     errors: Option<ResidualKde>,
 }
 
@@ -60,7 +60,7 @@ impl Estimator {
         rig: Rig,
         hand: HandShape,
         descriptor: Descriptor,
-        regression: impl Into<Regression>,
+        regression: impl Into<FittedRegressor>,
     ) -> Result<Self> {
         rig.validate()?;
         hand.validate()?;
@@ -115,7 +115,7 @@ impl Estimator {
     }
 
     /// Its regressor.
-    pub fn regression(&self) -> &Regression {
+    pub fn regressor(&self) -> &FittedRegressor {
         &self.regression
     }
 

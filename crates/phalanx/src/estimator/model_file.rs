@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::Result;
 use crate::estimator::container::Container;
 use crate::estimator::estimate::Estimator;
-use crate::estimator::regression::Regression;
+use crate::estimator::regression::FittedRegressor;
 use crate::features::descriptor::Descriptor;
 
 const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 7 };
@@ -43,10 +43,10 @@ impl Estimator {
             rig: Cow::Borrowed(self.rig()),
             hand: Cow::Borrowed(self.hand()),
             descriptor: Cow::Borrowed(self.descriptor()),
-            regression: match self.regression() {
-                Regression::Joint(model) => Stored::Joint(Cow::Borrowed(model.parts())),
-                Regression::Projected(models) => Stored::Projected(Cow::Borrowed(models)),
-                Regression::Network(own) => Stored::Network(Cow::Borrowed(own)),
+            regression: match self.regressor() {
+                FittedRegressor::Joint(model) => Stored::Joint(Cow::Borrowed(model.parts())),
+                FittedRegressor::Projected(models) => Stored::Projected(Cow::Borrowed(models)),
+                FittedRegressor::Network(own) => Stored::Network(Cow::Borrowed(own)),
             },
             errors: self.errors().map(|errors| Cow::Borrowed(errors.parts())),
         };
@@ -62,7 +62,7 @@ impl Estimator {
         let Payload { rig, hand, descriptor, regression, errors } = MODEL.decode(bytes)?;
         let regression = match regression {
             Stored::Joint(parts) => Model::from_parts(parts.into_owned())?.into(),
-            Stored::Projected(models) => Regression::Projected(models.into_owned()),
+            Stored::Projected(models) => FittedRegressor::Projected(models.into_owned()),
             Stored::Network(own) => own.into_owned().into(),
         };
         let (rig, hand) = (rig.into_owned(), hand.into_owned());

@@ -5,7 +5,7 @@ use phalanx_rvm::{GroupedRegressor, Model, PcaMlp, Scratch};
 /// A fitted regressor from descriptors to poses.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub enum Regression {
+pub enum FittedRegressor {
     /// One model of all numbers of the pose.
     Joint(Box<Model>),
     /// A model for each digit, with a distance of its own.
@@ -14,25 +14,25 @@ pub enum Regression {
     Network(Box<PcaMlp>),
 }
 
-impl From<Model> for Regression {
+impl From<Model> for FittedRegressor {
     fn from(model: Model) -> Self {
         Self::Joint(Box::new(model))
     }
 }
 
-impl From<GroupedRegressor> for Regression {
+impl From<GroupedRegressor> for FittedRegressor {
     fn from(projected: GroupedRegressor) -> Self {
         Self::Projected(projected)
     }
 }
 
-impl From<PcaMlp> for Regression {
+impl From<PcaMlp> for FittedRegressor {
     fn from(network: PcaMlp) -> Self {
         Self::Network(Box::new(network))
     }
 }
 
-impl Regression {
+impl FittedRegressor {
     /// The models, of all numbers of the pose or of a group of them each; none of a network.
     pub fn models(&self) -> &[Model] {
         match self {

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::frame_fit::{Found, FrameFitter};
 use super::observation::{ViewConfig, fitted_hand, length_mm};
 use super::{TakeFrame, starts};
-use crate::{Error, Progress, Result, Silent};
+use crate::{Error, NoProgress, Progress, Result};
 
 /// Frames from which it is found where the hand works.
 const KEY_FRAMES: usize = 12;
@@ -41,7 +41,7 @@ pub fn estimate_volume(
     let (hand, prior, refinement) = (fitted_hand(hand), starts::pose_prior()?, refinement());
     let weights = vec![1.0; cameras.len()];
     let fitter = FrameFitter { hand: &hand, prior: &prior, refinement: &refinement, weights };
-    let found = key_frames(cameras, frames, &fitter, &Silent)?;
+    let found = key_frames(cameras, frames, &fitter, &NoProgress)?;
     let middle = agreed(&found, &hand)?;
     let reach = 0.5 * length_mm(&hand);
     let agrees = |found: &&Found| apart(&middle, &found.frame(&hand), reach) < AGREES;

@@ -12,25 +12,25 @@ use crate::losses::Losses;
 use crate::progress::Progress;
 use crate::synthesis::sampler::SceneSampler;
 use crate::synthesis::scene::SceneSource;
-use crate::training::plan::{Basis, described_ones, targets_of};
+use crate::training::plan::{TrainingPlan, described_ones, targets_of};
 use crate::training::recipe::Training;
 use crate::training::shard::{BLOCK, Shard, scenes_of};
-use crate::training::statistics::Gathered;
+use crate::training::statistics::TrainingStatistics;
 
 const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 5 };
 
 /// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
 /// and to [`finish`](Self::finish) the estimator. For most regressors that is sums, whose size does
-/// not depend on the number of scenes; a [network](crate::Regressor::Network) keeps what it reads of
+/// not depend on the number of scenes; a [network](crate::RegressorConfig::Network) keeps what it reads of
 /// each, a dense regressor the descriptor of each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Part {
-    basis: Basis,
+pub struct PartialTraining {
+    plan: TrainingPlan,
     scenes: usize,
     /// The blocks that are in the sums, ascending, and the scenes that could not be described.
     blocks: Vec<usize>,
     losses: Losses,
-    gathered: Gathered,
+    statistics: TrainingStatistics,
     /// What the error model is fitted to, if there is to be one.
     errors: Option<ErrorScenes>,
 }
@@ -44,14 +44,14 @@ pub(crate) struct ErrorScenes {
 
 impl Training {
     /// Learns from scenes of a rig, of which there may be any number: none is kept. Scenes that some
-    /// camera does not show well enough are left out; [`Part::losses`] tells how many, and why.
+    /// camera does not show well enough are left out; [`PartialTraining::losses`] tells how many, and why.
     ///
     /// A run does the `shard` of all blocks of scenes that it is told; runs that differ in nothing
-    /// else give parts which, merged in any order, [finish](Part::finish) to the bytes of a single
+    /// else give parts which, merged in any order, [finish](PartialTraining::finish) to the bytes of a single
     /// run of [`Shard::WHOLE`].
     ///
     /// The codebooks are learnt from at most a thousand scenes, chosen at random, and the regressor
-    /// has a [limited number](crate::Regressor::CANDIDATES) of Gaussians. `rig` and `hand` are what
+    /// has a [limited number](crate::RegressorConfig::CANDIDATES) of Gaussians. `rig` and `hand` are what
     /// the estimator takes pictures to be of, whatever the scenes are.
     ///
     /// # Errors
@@ -65,33 +65,34 @@ impl Training {
         scenes: &dyn SceneSource,
         shard: Shard,
         progress: &dyn Progress,
-    ) -> Result<Part> {
+    ) -> Result<PartialTraining> {
         rig.validate()?;
         hand.validate()?;
-        let basis = self.basis(rig, hand, scenes, progress)?;
-        let columns = basis.columns()?;
+        let plan = self.plan(rig, hand, scenes, progress)?;
+        let columns = plan.columns()?;
         let blocks: Vec<usize> = shard.blocks(scenes.count()).collect();
-        let gathered = Gathered::new(&basis, &columns);
+        let statistics = TrainingStatistics::new(&plan, &columns);
         let (losses, errors) = (Losses::default(), None);
-        let mut part = Part { gathered, scenes: scenes.count(), losses, blocks, basis, errors };
+        let mut part =
+            PartialTraining { statistics, scenes: scenes.count(), losses, blocks, plan, errors };
         let shown = part.blocks.iter().map(|&block| scenes_of(block, part.scenes).len()).sum();
         progress.begin("render, describe, sum", shown);
         for &block in &part.blocks {
             let numbers: Vec<usize> = scenes_of(block, part.scenes).collect();
-            let descriptor = &part.basis.descriptor;
+            let descriptor = &part.plan.descriptor;
             let described = describe_scenes(rig, scenes, &numbers, descriptor, progress)?;
             let (kept, x) = described_ones(&numbers, described, &mut part.losses);
             if kept.is_empty() {
                 continue;
             }
             let y = targets_of(scenes, &kept);
-            part.gathered.add(&part.basis, &columns, block, x, &y)?;
+            part.statistics.add(&part.plan, &columns, block, x, &y)?;
         }
         Ok(part)
     }
 }
 
-impl Part {
+impl PartialTraining {
     /// The scenes that could not be described so far.
     pub fn losses(&self) -> &Losses {
         &self.losses
@@ -114,8 +115,8 @@ impl Part {
         };
         for (reason, holds) in [
             ("its blocks are not in order", ascending(&self.blocks, self.scenes.div_ceil(BLOCK))),
-            ("its pilot is not in order", ascending(&self.basis.pilot, self.scenes)),
-            ("its pilot is too large", self.basis.pilot.len() <= self.basis.regressor.centres()),
+            ("its pilot is not in order", ascending(&self.plan.pilot, self.scenes)),
+            ("its pilot is too large", self.plan.pilot.len() <= self.plan.regressor.centres()),
         ] {
             if !holds {
                 return Err(Error::FileContent { what: PART.what, reason: reason.to_owned() });
@@ -130,11 +131,11 @@ impl Part {
     /// A part of another training, or one that holds a block that is here already.
     pub fn merge(&mut self, other: Self) -> Result<()> {
         for (what, differ) in [
-            ("their rigs", self.basis.rig != other.basis.rig),
-            ("their hands", self.basis.hand != other.basis.hand),
+            ("their rigs", self.plan.rig != other.plan.rig),
+            ("their hands", self.plan.hand != other.plan.hand),
             ("their numbers of scenes", self.scenes != other.scenes),
-            ("their regressors", self.basis.regressor != other.basis.regressor),
-            ("what they learn from", self.basis != other.basis),
+            ("their regressors", self.plan.regressor != other.plan.regressor),
+            ("what they learn from", self.plan != other.plan),
             ("what their errors are learnt from", self.errors != other.errors),
         ] {
             if differ {
@@ -146,7 +147,7 @@ impl Part {
             let both = scenes_of(block, self.scenes);
             return Err(Error::Overlap { first: both.start, last: both.end - 1 });
         }
-        self.gathered.merge(other.gathered)?;
+        self.statistics.merge(other.statistics)?;
         self.blocks.extend(other.blocks);
         self.blocks.sort_unstable();
         self.losses.merge(other.losses);
@@ -168,8 +169,8 @@ impl Part {
         if self.losses.count() > 0 {
             progress.lost(&self.losses, self.scenes);
         }
-        let regression = self.gathered.fit(&self.basis, progress)?;
-        let Basis { rig, hand, descriptor, .. } = self.basis;
+        let regression = self.statistics.fit(&self.plan, progress)?;
+        let TrainingPlan { rig, hand, descriptor, .. } = self.plan;
         let estimator = Estimator::from_parts(rig.clone(), hand.clone(), descriptor, regression)?;
         match self.errors {
             Some(ErrorScenes { sampler, count }) => {
@@ -194,14 +195,14 @@ impl Part {
     /// themselves.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let part: Self = PART.decode(bytes)?;
-        part.basis.rig.validate()?;
-        part.basis.hand.validate()?;
+        part.plan.rig.validate()?;
+        part.plan.hand.validate()?;
         part.check_numbers()?;
         part.errors.iter().try_for_each(|errors| errors.sampler.check())?;
-        let columns = part.basis.columns()?;
+        let columns = part.plan.columns()?;
         let shown: usize = part.blocks.iter().map(|&b| scenes_of(b, part.scenes).len()).sum();
         let samples = shown.checked_sub(part.losses.count());
-        part.gathered.check(&part.basis, &columns, &part.blocks, samples)?;
+        part.statistics.check(&part.plan, &columns, &part.blocks, samples)?;
         Ok(part)
     }
 }
@@ -214,12 +215,12 @@ mod tests {
     use phalanx_rvm::{BlockPca, Ridge};
 
     use super::*;
-    use crate::progress::Silent;
+    use crate::progress::NoProgress;
     use crate::synthesis::scene::FixedPoses;
-    use crate::training::plan::Reading;
-    use crate::training::regressor::Regressor;
+    use crate::training::plan::FeatureTransform;
+    use crate::training::regressor::RegressorConfig;
 
-    fn part() -> Part {
+    fn part() -> PartialTraining {
         let rig = Rig::from_toml(include_str!("../../fixtures/desk.toml")).unwrap();
         let rig = rig.select(&["top"]).unwrap();
         let hand = HandShape::adult();
@@ -231,32 +232,34 @@ mod tests {
             })
             .collect();
         let mut training =
-            Training { regressor: Regressor::Ridge(Ridge::default()), ..Training::default() };
+            Training { regressor: RegressorConfig::Ridge(Ridge::default()), ..Training::default() };
         training.vocabulary.centres = 10;
         training.vocabulary.most_samples = 500;
         let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
-        training.shard(&rig, &hand, &scenes, Shard::WHOLE, &Silent).unwrap()
+        training.shard(&rig, &hand, &scenes, Shard::WHOLE, &NoProgress).unwrap()
     }
 
     #[test]
     fn parts_that_contradict_themselves_are_refused() {
         let good = part();
-        assert_eq!(Part::from_bytes(&good.to_bytes().unwrap()).unwrap(), good);
-        let spoils: [fn(&mut Part); 9] = [
+        assert_eq!(PartialTraining::from_bytes(&good.to_bytes().unwrap()).unwrap(), good);
+        let spoils: [fn(&mut PartialTraining); 9] = [
             |part| part.blocks = vec![0, 0],
             |part| part.blocks = vec![1],
             |part| part.losses.add(0, &Error::TooFewPoses { found: 0 }),
-            |part| part.basis.pilot.swap(0, 1),
-            |part| part.basis.pilot_x.truncate(3),
+            |part| part.plan.pilot.swap(0, 1),
+            |part| part.plan.pilot_x.truncate(3),
             |part| part.scenes = usize::MAX,
-            |part| part.basis.reading = Reading::Components(BlockPca::from_parts(Vec::new())),
-            |part| part.gathered = Gathered::Sums(Vec::new()),
-            |part| part.gathered = Gathered::Samples(BTreeMap::new()),
+            |part| {
+                part.plan.transform = FeatureTransform::Components(BlockPca::from_parts(Vec::new()))
+            },
+            |part| part.statistics = TrainingStatistics::Sums(Vec::new()),
+            |part| part.statistics = TrainingStatistics::Samples(BTreeMap::new()),
         ];
         for (k, spoil) in spoils.into_iter().enumerate() {
             let mut spoilt = good.clone();
             spoil(&mut spoilt);
-            let error = Part::from_bytes(&spoilt.to_bytes().unwrap()).unwrap_err();
+            let error = PartialTraining::from_bytes(&spoilt.to_bytes().unwrap()).unwrap_err();
             let named = matches!(error, Error::FileContent { .. } | Error::Mismatch { .. });
             assert!(named, "spoil {k}: {error}");
         }

@@ -15,16 +15,16 @@ use crate::synthesis::scene::SUBSET_SEED;
 use crate::synthesis::scene::{SceneSource, SceneSubset};
 use crate::synthesis::scene_describer::describe_each;
 use crate::training::recipe::{Training, targets};
-use crate::training::regressor::{Kept, Regressor, columns_of};
+use crate::training::regressor::{Kept, RegressorConfig, columns_of};
 
 /// What every part of a training must know before it begins; each finds it by itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Basis {
+pub(crate) struct TrainingPlan {
     pub(crate) rig: Rig,
     pub(crate) hand: HandShape,
     pub(crate) descriptor: Descriptor,
-    pub(crate) regressor: Regressor,
-    pub(crate) reading: Reading,
+    pub(crate) regressor: RegressorConfig,
+    pub(crate) transform: FeatureTransform,
     /// Scenes that scaling and Gaussian centres are taken from, and their x (as the regressor reads
     /// it) and y (28), one after the other.
     pub(crate) pilot: Vec<usize>,
@@ -34,7 +34,7 @@ pub(crate) struct Basis {
 
 /// What the regressor reads of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) enum Reading {
+pub(crate) enum FeatureTransform {
     /// Its descriptor.
     Whole,
     /// The descriptor's principal components.
@@ -44,13 +44,13 @@ pub(crate) enum Reading {
 }
 
 impl Training {
-    pub(crate) fn basis(
+    pub(crate) fn plan(
         &self,
         rig: &Rig,
         hand: &HandShape,
         scenes: &dyn SceneSource,
         progress: &dyn Progress,
-    ) -> Result<Basis> {
+    ) -> Result<TrainingPlan> {
         self.regressor.check_samples(scenes.count(), self.least_dim(rig.cameras.len()))?;
         let some = SceneSubset::new(scenes, Training::CODEBOOK_SCENES);
         let described = describe_each(rig, &some, self.view_config(), progress)?;
@@ -75,17 +75,17 @@ impl Training {
         // These scenes come again, and are counted then.
         let (pilot, x) = described_ones(&pilot, described, &mut Losses::default());
         let y = targets_of(scenes, &pilot);
-        let reading = self.regressor.reading(&x, &y, &descriptor, progress)?;
+        let transform = self.regressor.transform(&x, &y, &descriptor, progress)?;
         let chosen = random_subset(pilot.len(), self.regressor.centres(), SUBSET_SEED);
         let [x, y] = [x, y].map(|all| columns_of(all.as_ref(), &chosen));
-        let x = reading.of(x)?;
+        let x = transform.of(x)?;
         let numbers = |all: &Mat<f64>| all.col_iter().flat_map(|c| c.iter().copied()).collect();
-        Ok(Basis {
+        Ok(TrainingPlan {
             rig: rig.clone(),
             hand: hand.clone(),
             descriptor,
             regressor: self.regressor.clone(),
-            reading,
+            transform,
             pilot_x: numbers(&x),
             pilot_y: numbers(&y),
             pilot: chosen.into_iter().map(|place| pilot[place]).collect(),
@@ -93,7 +93,7 @@ impl Training {
     }
 }
 
-impl Reading {
+impl FeatureTransform {
     /// What is read of descriptors, a column each.
     pub(crate) fn of(&self, x: Mat<f64>) -> Result<Mat<f64>> {
         Ok(match self {
@@ -113,10 +113,10 @@ impl Reading {
     }
 }
 
-impl Basis {
+impl TrainingPlan {
     /// Numbers that the regressor reads of a scene.
     pub(crate) fn read(&self) -> usize {
-        self.reading.count(self.descriptor.dim())
+        self.transform.count(self.descriptor.dim())
     }
 
     /// The columns of all numbers of the pose together, or of each group; none of a regressor that is
@@ -134,10 +134,12 @@ impl Basis {
         }
         let x = MatRef::from_column_major_slice(&self.pilot_x, self.read(), samples);
         let y = MatRef::from_column_major_slice(&self.pilot_y, Dof::COUNT, samples);
-        match (&self.regressor, &self.reading) {
-            (Regressor::Network(_), Reading::Components(_)) => Ok(Vec::new()),
-            (regressor, Reading::Whole) if regressor.kept() != Kept::Sums => Ok(Vec::new()),
-            (Regressor::LearntMetric(fitter), Reading::Metric(metric)) => {
+        match (&self.regressor, &self.transform) {
+            (RegressorConfig::Network(_), FeatureTransform::Components(_)) => Ok(Vec::new()),
+            (regressor, FeatureTransform::Whole) if regressor.kept() != Kept::Sums => {
+                Ok(Vec::new())
+            }
+            (RegressorConfig::LearntMetric(fitter), FeatureTransform::Metric(metric)) => {
                 let of_group = |group: usize| {
                     let y = metric.targets(group, y);
                     let x = metric.part(group, x);
@@ -146,8 +148,8 @@ impl Basis {
                 };
                 (0..metric.groups.len()).into_par_iter().map(of_group).collect()
             }
-            (regressor, reading) => match (regressor.summed(), reading) {
-                (Some(kernel), Reading::Whole) => {
+            (regressor, transform) => match (regressor.summed(), transform) {
+                (Some(kernel), FeatureTransform::Whole) => {
                     let pilot = PilotSample { x, y, samples: &self.pilot };
                     Ok(vec![BasisSpec::new(&pilot, kernel)?])
                 }

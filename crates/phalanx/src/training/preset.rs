@@ -9,7 +9,7 @@ use phalanx_rvm::{
 
 use crate::features::describer::OrientationRule;
 use crate::training::recipe::{Encoding, Training};
-use crate::training::regressor::{LearntMetric, NetworkTraining, Regressor};
+use crate::training::regressor::{LearntMetric, NetworkTraining, RegressorConfig};
 use crate::window::Framing;
 
 /// How much time an estimator is worth.
@@ -46,7 +46,7 @@ impl Preset {
             regularisation: NystromRegularisation::Gcv(penalties.to_vec()),
         };
         let regressor = match self {
-            Self::Fast => Regressor::LearntMetric(LearntMetric {
+            Self::Fast => RegressorConfig::LearntMetric(LearntMetric {
                 pilot: 2000,
                 components: 120,
                 metric: ExpectedGradientOuterProduct {
@@ -79,8 +79,8 @@ impl Preset {
 /// A network on principal components, three layers so wide and one after them. In the same time, more
 /// scenes teach it more than looking at each of them more often; and where so many differ, little
 /// need be left out.
-fn network(width: usize, epochs: usize) -> Regressor {
+fn network(width: usize, epochs: usize) -> RegressorConfig {
     let perceptron =
         MlpTrainer { hidden: vec![width; 3], epochs, dropout: 0.05, ..MlpTrainer::default() };
-    Regressor::Network(NetworkTraining { pilot: 4000, components: 120, perceptron })
+    RegressorConfig::Network(NetworkTraining { pilot: 4000, components: 120, perceptron })
 }

@@ -14,7 +14,7 @@ use crate::features::descriptor::{Descriptor, ExtraFeatures};
 use crate::progress::Progress;
 use crate::synthesis::scene::FixedPoses;
 use crate::synthesis::scene_describer::PoseContexts;
-use crate::training::regressor::Regressor;
+use crate::training::regressor::RegressorConfig;
 use crate::training::shard::Shard;
 use crate::window::Framing;
 
@@ -35,7 +35,7 @@ pub struct Training {
     /// What is described with them.
     pub encoding: Encoding,
     /// The regressor.
-    pub regressor: Regressor,
+    pub regressor: RegressorConfig,
 }
 
 /// What of the silhouettes is described.
@@ -55,7 +55,7 @@ impl Default for Training {
             framing: Framing::default(),
             vocabulary: Vocabulary::default(),
             encoding: Encoding::SoftHistogram,
-            regressor: Regressor::KernelRidge(KernelRidge {
+            regressor: RegressorConfig::KernelRidge(KernelRidge {
                 bandwidth: Bandwidth::Relative(0.5),
                 regularisation: Regularisation::Fixed(0.01),
             }),

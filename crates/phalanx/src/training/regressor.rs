@@ -11,11 +11,11 @@ use phalanx_rvm::{
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::estimator::regression::Regression;
+use crate::estimator::regression::FittedRegressor;
 use crate::features::descriptor::Descriptor;
 use crate::progress::Progress;
 use crate::synthesis::scene::SUBSET_SEED;
-use crate::training::plan::Reading;
+use crate::training::plan::FeatureTransform;
 
 /// Samples that are added to sums at a time.
 const BATCH: usize = 4096;
@@ -23,7 +23,7 @@ const BATCH: usize = 4096;
 /// A regressor from descriptors to poses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub enum Regressor {
+pub enum RegressorConfig {
     /// Ridge regression.
     Ridge(Ridge),
     /// Agarwal and Triggs' column-wise quadratic bridges: the paper's "lin" and "gauss".
@@ -111,7 +111,7 @@ fn groups() -> Vec<Vec<usize>> {
     digits.into_iter().chain([others]).collect()
 }
 
-impl Regressor {
+impl RegressorConfig {
     /// Most samples that Gaussians are put on by default. Of more, as many are candidates, chosen at
     /// random, while all are fitted to: then no matrix has a row or column for each sample.
     pub const CANDIDATES: usize = 2000;
@@ -179,40 +179,41 @@ impl Regressor {
     }
 
     /// Learns what to read of a descriptor from a pilot's descriptors, K × n, and poses, 28 × n.
-    pub(crate) fn reading(
+    pub(crate) fn transform(
         &self,
         x: &Mat<f64>,
         y: &Mat<f64>,
         descriptor: &Descriptor,
         progress: &dyn Progress,
-    ) -> Result<Reading> {
+    ) -> Result<FeatureTransform> {
         let parts = descriptor.blocks();
         Ok(match self {
             Self::LearntMetric(fitter) => {
                 progress.begin("learn distances", 1);
                 let metric = fitter.learn(x.as_ref(), y.as_ref(), &parts)?;
                 progress.step();
-                Reading::Metric(metric)
+                FeatureTransform::Metric(metric)
             }
             Self::Network(fitter) => {
                 progress.begin("find principal components", 1);
                 let components = BlockPca::fit(x.as_ref(), &blocks(&parts, fitter.components))?;
                 progress.step();
-                Reading::Components(components)
+                FeatureTransform::Components(components)
             }
-            _ => Reading::Whole,
+            _ => FeatureTransform::Whole,
         })
     }
 
     /// Fits samples themselves: what is read of them, d × I, and their poses, 28 × I.
     pub(crate) fn fit_samples(
         &self,
-        reading: &Reading,
+        transform: &FeatureTransform,
         x: MatRef<'_, f32>,
         y: MatRef<'_, f64>,
         progress: &dyn Progress,
-    ) -> Result<Regression> {
-        let (Self::Network(fitter), Reading::Components(components)) = (self, reading) else {
+    ) -> Result<FittedRegressor> {
+        let (Self::Network(fitter), FeatureTransform::Components(components)) = (self, transform)
+        else {
             return Err(Error::Mismatch { part: "principal components", found: 0, expected: 1 });
         };
         progress.begin("train the network", fitter.perceptron.epochs);

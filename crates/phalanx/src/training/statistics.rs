@@ -9,14 +9,14 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::estimator::regression::Regression;
+use crate::estimator::regression::FittedRegressor;
 use crate::progress::Progress;
-use crate::training::plan::{Basis, Reading};
+use crate::training::plan::{FeatureTransform, TrainingPlan};
 use crate::training::regressor::Kept;
 
 /// Enough of the scenes to fit the regressor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) enum Gathered {
+pub(crate) enum TrainingStatistics {
     /// Sums over the columns of all numbers of the pose, or over those of each group.
     Sums(Vec<SufficientStatistics>),
     /// What the regressor reads of each sample, by the number of its block of scenes.
@@ -81,10 +81,10 @@ impl<T> Samples<T> {
     }
 }
 
-impl Gathered {
+impl TrainingStatistics {
     /// Nothing yet, for a regressor with these columns.
-    pub(crate) fn new(basis: &Basis, columns: &[BasisSpec]) -> Self {
-        match basis.regressor.kept() {
+    pub(crate) fn new(plan: &TrainingPlan, columns: &[BasisSpec]) -> Self {
+        match plan.regressor.kept() {
             Kept::Sums => Self::Sums(columns.iter().map(SufficientStatistics::new).collect()),
             Kept::Readings => Self::Samples(BTreeMap::new()),
             Kept::Descriptors { .. } => Self::Descriptors(BTreeMap::new()),
@@ -94,21 +94,21 @@ impl Gathered {
     /// Adds the descriptors and poses of a block of scenes.
     pub(crate) fn add(
         &mut self,
-        basis: &Basis,
+        plan: &TrainingPlan,
         columns: &[BasisSpec],
         block: usize,
         x: Mat<f64>,
         y: &Mat<f64>,
     ) -> Result<()> {
-        let z = basis.reading.of(x)?;
-        match (self, &basis.reading) {
+        let z = plan.transform.of(x)?;
+        match (self, &plan.transform) {
             (Self::Samples(blocks), _) => {
                 blocks.insert(block, Samples::new(&z, y, |value| value as f32));
             }
             (Self::Descriptors(blocks), _) => {
                 blocks.insert(block, Samples::new(&z, y, |value| value));
             }
-            (Self::Sums(sums), Reading::Metric(metric)) => {
+            (Self::Sums(sums), FeatureTransform::Metric(metric)) => {
                 for (group, (sums, columns)) in sums.iter_mut().zip(columns).enumerate() {
                     let y = metric.targets(group, y.as_ref());
                     sums.add(columns, metric.part(group, z.as_ref()), y.as_ref())?;
@@ -137,13 +137,13 @@ impl Gathered {
     /// Refuses what does not belong to the regressor, or is not of so many samples in these blocks.
     pub(crate) fn check(
         &self,
-        basis: &Basis,
+        plan: &TrainingPlan,
         columns: &[BasisSpec],
         held: &[usize],
         samples: Option<usize>,
     ) -> Result<()> {
         let foreign = |part, found, expected| Err(Error::Mismatch { part, found, expected });
-        let kept = basis.regressor.kept();
+        let kept = plan.regressor.kept();
         match self {
             Self::Sums(sums) => {
                 if sums.len() != columns.len() || kept != Kept::Sums {
@@ -162,38 +162,42 @@ impl Gathered {
             }
             _ if !columns.is_empty() => foreign("sums", 0, columns.len()),
             Self::Samples(blocks) if kept == Kept::Readings => {
-                Samples::check(blocks, basis.read(), held, samples)
+                Samples::check(blocks, plan.read(), held, samples)
             }
             Self::Descriptors(blocks) if matches!(kept, Kept::Descriptors { .. }) => {
-                Samples::check(blocks, basis.read(), held, samples)
+                Samples::check(blocks, plan.read(), held, samples)
             }
             Self::Samples(_) | Self::Descriptors(_) => foreign("kinds of samples", 0, 1),
         }
     }
 
     /// The regression that all scenes amount to.
-    pub(crate) fn fit(self, basis: &Basis, progress: &dyn Progress) -> Result<Regression> {
+    pub(crate) fn fit(
+        self,
+        plan: &TrainingPlan,
+        progress: &dyn Progress,
+    ) -> Result<FittedRegressor> {
         match self {
             Self::Sums(sums) => {
                 progress.begin("fit the regressor", 1);
-                let regression = fit_sums(&sums, basis)?;
+                let regression = fit_sums(&sums, plan)?;
                 progress.step();
                 Ok(regression)
             }
             Self::Samples(blocks) => {
                 let Samples { x, y } = Samples::of_blocks(blocks);
                 let count = y.len() / Dof::COUNT;
-                let x = MatRef::from_column_major_slice(&x, basis.read(), count);
+                let x = MatRef::from_column_major_slice(&x, plan.read(), count);
                 let y = MatRef::from_column_major_slice(&y, Dof::COUNT, count);
-                basis.regressor.fit_samples(&basis.reading, x, y, progress)
+                plan.regressor.fit_samples(&plan.transform, x, y, progress)
             }
             Self::Descriptors(blocks) => {
                 progress.begin("fit the regressor", 1);
                 let Samples { x, y } = Samples::of_blocks(blocks);
                 let count = y.len() / Dof::COUNT;
-                let x = MatRef::from_column_major_slice(&x, basis.read(), count).to_owned();
+                let x = MatRef::from_column_major_slice(&x, plan.read(), count).to_owned();
                 let y = MatRef::from_column_major_slice(&y, Dof::COUNT, count).to_owned();
-                let fit = basis.regressor.fit(&x, &y)?;
+                let fit = plan.regressor.fit(&x, &y)?;
                 progress.step();
                 Ok(fit.model.into())
             }
@@ -201,15 +205,17 @@ impl Gathered {
     }
 }
 
-fn fit_sums(sums: &[SufficientStatistics], basis: &Basis) -> Result<Regression> {
+fn fit_sums(sums: &[SufficientStatistics], plan: &TrainingPlan) -> Result<FittedRegressor> {
     let work: Vec<(BasisSpec, &SufficientStatistics)> =
-        basis.columns()?.into_iter().zip(sums).collect();
+        plan.columns()?.into_iter().zip(sums).collect();
     let fit = |(columns, sums): &(BasisSpec, &SufficientStatistics)| {
-        Ok(basis.regressor.fit_sums(columns, sums)?.model)
+        Ok(plan.regressor.fit_sums(columns, sums)?.model)
     };
     let mut models = work.par_iter().map(fit).collect::<Result<Vec<_>>>()?;
-    Ok(match &basis.reading {
-        Reading::Metric(metric) => GroupedRegressor::from_parts(metric.clone(), models)?.into(),
+    Ok(match &plan.transform {
+        FeatureTransform::Metric(metric) => {
+            GroupedRegressor::from_parts(metric.clone(), models)?.into()
+        }
         _ => models.remove(0).into(),
     })
 }

@@ -8,7 +8,7 @@ use crate::estimator::estimate::Estimator;
 use crate::progress::Progress;
 use crate::synthesis::augmentation::Augmentation;
 use crate::synthesis::sampler::{PoseSource, SceneSampler};
-use crate::training::partial::{ErrorScenes, Part};
+use crate::training::partial::{ErrorScenes, PartialTraining};
 use crate::training::preset::Preset;
 use crate::training::recipe::Training;
 use crate::training::shard::Shard;
@@ -18,12 +18,12 @@ use crate::window::Framing;
 /// the estimator's errors to further scenes.
 ///
 /// ```no_run
-/// use phalanx::{Preset, Silent, Trainer};
+/// use phalanx::{Preset, NoProgress, Trainer};
 /// use phalanx_camera::Rig;
 /// use phalanx_hand::HandShape;
 ///
 /// let rig = Rig::from_toml(&std::fs::read_to_string("rig.toml")?)?;
-/// let estimator = Trainer::preset(Preset::Default).fit(&rig, &HandShape::adult(), &Silent)?;
+/// let estimator = Trainer::preset(Preset::Default).fit(&rig, &HandShape::adult(), &NoProgress)?;
 /// std::fs::write("hand.phalanx", estimator.to_bytes()?)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -151,8 +151,8 @@ impl Trainer {
         self.fit_shard(rig, hand, Shard::WHOLE, progress)?.finish(progress)
     }
 
-    /// Does one shard of the training. All shards, [merged](Part::merge) in any order and
-    /// [finished](Part::finish), give the bytes of [`fit`](Self::fit).
+    /// Does one shard of the training. All shards, [merged](PartialTraining::merge) in any order and
+    /// [finished](PartialTraining::finish), give the bytes of [`fit`](Self::fit).
     ///
     /// # Errors
     /// As of [`fit`](Self::fit).
@@ -162,7 +162,7 @@ impl Trainer {
         hand: &HandShape,
         shard: Shard,
         progress: &dyn Progress,
-    ) -> Result<Part> {
+    ) -> Result<PartialTraining> {
         let sampler = self.sampler();
         sampler.check()?;
         let scenes = sampler.scenes(rig, hand, self.samples);

@@ -4,8 +4,8 @@ use std::sync::LazyLock;
 
 use image::GrayImage;
 use phalanx::{
-    Estimate, Estimator, OrientationRule, Picture, Regressor, Silent, Training, Workspace,
-    draw_silhouette,
+    Estimate, Estimator, NoProgress, OrientationRule, Picture, RegressorConfig, Training,
+    Workspace, draw_silhouette,
 };
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
@@ -57,12 +57,12 @@ pub(crate) fn training(orientation: OrientationRule) -> Training {
     let mut vocabulary = Vocabulary { centres: 30, most_samples: 4000, ..Vocabulary::default() };
     vocabulary.clustering.restarts = 1;
     // The penalty by leave-one-out: what is asked about lies between what is learnt.
-    let regressor = Regressor::KernelRidge(KernelRidge::default());
+    let regressor = RegressorConfig::KernelRidge(KernelRidge::default());
     Training { orientation, vocabulary, regressor, ..Training::default() }
 }
 
 fn learn(rig: &Rig, orientation: OrientationRule) -> Estimator {
-    training(orientation).run(rig, &HandShape::adult(), &poses(), &Silent).unwrap()
+    training(orientation).run(rig, &HandShape::adult(), &poses(), &NoProgress).unwrap()
 }
 
 /// Three views by the forearm's axis.

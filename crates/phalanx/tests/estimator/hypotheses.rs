@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use phalanx::{Error, Estimator, FixedPoses, Picture, Refiner, Silent, Workspace};
+use phalanx::{Error, Estimator, FixedPoses, NoProgress, Picture, Refiner, Workspace};
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::Refinement;
 
@@ -17,7 +17,7 @@ fn between() -> Vec<Pose> {
 fn learn() -> phalanx::Result<Estimator> {
     let (rig, hand, poses) = (top(), HandShape::adult(), between());
     let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
-    FROM_TOP.clone().learn_errors(&scenes, &Silent)
+    FROM_TOP.clone().learn_errors(&scenes, &NoProgress)
 }
 
 static LEARNT: LazyLock<Estimator> = LazyLock::new(|| learn().unwrap());
@@ -97,6 +97,6 @@ fn what_cannot_be_answered_is_named() {
     }
     let (rig, hand) = (top(), HandShape::adult());
     let none = FixedPoses { rig: &rig, hand: &hand, poses: &[] };
-    let error = FROM_TOP.clone().learn_errors(&none, &Silent).unwrap_err();
+    let error = FROM_TOP.clone().learn_errors(&none, &NoProgress).unwrap_err();
     assert!(matches!(error, Error::TooFewPoses { found: 0 }), "{error}");
 }

@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use phalanx::{
-    Encoding, Estimator, FixedPoses, LearntMetric, Preset, Regression, Regressor, Shard, Silent,
-    Training,
+    Encoding, Estimator, FittedRegressor, FixedPoses, LearntMetric, NoProgress, Preset,
+    RegressorConfig, Shard, Training,
 };
 use phalanx_hand::HandShape;
 
@@ -14,18 +14,24 @@ use crate::roads;
 /// The fast preset with few of everything.
 fn training() -> Training {
     let preset = Preset::Fast.training();
-    let Regressor::LearntMetric(learnt) = preset.regressor else { unreachable!("it learns one") };
+    let RegressorConfig::LearntMetric(learnt) = preset.regressor else {
+        unreachable!("it learns one")
+    };
     let mut metric = learnt.metric;
     (metric.centres, metric.gradients, metric.rank) = (40, 30, 6);
-    let regressor =
-        Regressor::LearntMetric(LearntMetric { components: 20, centres: 40, metric, ..learnt });
+    let regressor = RegressorConfig::LearntMetric(LearntMetric {
+        components: 20,
+        centres: 40,
+        metric,
+        ..learnt
+    });
     let mut vocabulary = preset.vocabulary;
     (vocabulary.centres, vocabulary.most_samples) = (6, 2000);
     Training { vocabulary, regressor, ..preset }
 }
 
 static LEARNT: LazyLock<Estimator> =
-    LazyLock::new(|| training().run(&top(), &HandShape::adult(), &poses(), &Silent).unwrap());
+    LazyLock::new(|| training().run(&top(), &HandShape::adult(), &poses(), &NoProgress).unwrap());
 
 #[test]
 fn poses_between_those_learnt_are_estimated() {
@@ -42,7 +48,7 @@ fn any_number_of_threads_learns_the_same_bytes() {
     let bytes = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let learnt = training().run(&top(), &HandShape::adult(), &poses(), &Silent);
+            let learnt = training().run(&top(), &HandShape::adult(), &poses(), &NoProgress);
             learnt.unwrap().to_bytes().unwrap()
         })
     };
@@ -51,7 +57,7 @@ fn any_number_of_threads_learns_the_same_bytes() {
 
 #[test]
 fn what_is_saved_is_loaded_and_a_cut_payload_refused() {
-    assert!(matches!(LEARNT.regression(), Regression::Projected(_)));
+    assert!(matches!(LEARNT.regressor(), FittedRegressor::Projected(_)));
     roads::survives_its_file(&LEARNT);
 }
 
@@ -59,15 +65,15 @@ fn what_is_saved_is_loaded_and_a_cut_payload_refused() {
 fn a_part_is_saved_and_loaded_and_finishes_to_the_same() {
     let (rig, hand, poses) = (top(), HandShape::adult(), poses());
     let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
-    let part = training().shard(&rig, &hand, &scenes, Shard::WHOLE, &Silent).unwrap();
-    let read = phalanx::Part::from_bytes(&part.to_bytes().unwrap()).unwrap();
+    let part = training().shard(&rig, &hand, &scenes, Shard::WHOLE, &NoProgress).unwrap();
+    let read = phalanx::PartialTraining::from_bytes(&part.to_bytes().unwrap()).unwrap();
     assert_eq!(read, part);
-    assert_eq!(&read.finish(&Silent).unwrap(), &*LEARNT);
+    assert_eq!(&read.finish(&NoProgress).unwrap(), &*LEARNT);
 }
 
 #[test]
 fn what_keeps_its_samples_learns_from_residuals_too() {
     let training = Training { encoding: Encoding::Vlad, ..Training::default() };
-    let learnt = training.run(&top(), &HandShape::adult(), &poses(), &Silent).unwrap();
+    let learnt = training.run(&top(), &HandShape::adult(), &poses(), &NoProgress).unwrap();
     roads::generalises(&learnt);
 }

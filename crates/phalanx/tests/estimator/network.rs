@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use phalanx::{
-    Error, Estimator, FixedPoses, NetworkTraining, Part, Preset, Regression, Regressor, Shard,
-    Silent, Training,
+    Error, Estimator, FittedRegressor, FixedPoses, NetworkTraining, NoProgress, PartialTraining,
+    Preset, RegressorConfig, Shard, Training,
 };
 use phalanx_hand::{HandShape, Pose};
 use phalanx_rvm::MlpTrainer;
@@ -15,7 +15,9 @@ use crate::roads;
 /// The default preset with few of everything.
 fn training() -> Training {
     let preset = Preset::default().training();
-    let Regressor::Network(network) = preset.regressor else { unreachable!("it is a network") };
+    let RegressorConfig::Network(network) = preset.regressor else {
+        unreachable!("it is a network")
+    };
     let perceptron = MlpTrainer {
         hidden: vec![32; 3],
         epochs: 400,
@@ -23,30 +25,31 @@ fn training() -> Training {
         dropout: 0.0,
         ..network.perceptron
     };
-    let regressor = Regressor::Network(NetworkTraining { components: 20, perceptron, ..network });
+    let regressor =
+        RegressorConfig::Network(NetworkTraining { components: 20, perceptron, ..network });
     let mut vocabulary = preset.vocabulary;
     (vocabulary.centres, vocabulary.most_samples) = (6, 2000);
     Training { vocabulary, regressor, ..preset }
 }
 
 static LEARNT: LazyLock<Estimator> =
-    LazyLock::new(|| training().run(&top(), &HandShape::adult(), &poses(), &Silent).unwrap());
+    LazyLock::new(|| training().run(&top(), &HandShape::adult(), &poses(), &NoProgress).unwrap());
 
 /// As quick to learn as can be.
 fn hasty() -> Training {
     let mut training = training();
-    if let Regressor::Network(network) = &mut training.regressor {
+    if let RegressorConfig::Network(network) = &mut training.regressor {
         network.perceptron.epochs = 2;
     }
     training
 }
 
 /// The part of a shard, over more than one block of scenes.
-fn part(shard: Shard) -> Part {
+fn part(shard: Shard) -> PartialTraining {
     let (rig, hand) = (top(), HandShape::adult());
     let poses: Vec<Pose> = poses().into_iter().cycle().take(1030).collect();
     let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
-    hasty().shard(&rig, &hand, &scenes, shard, &Silent).unwrap()
+    hasty().shard(&rig, &hand, &scenes, shard, &NoProgress).unwrap()
 }
 
 #[test]
@@ -61,20 +64,20 @@ fn every_angle_that_varies_has_a_deviation() {
 
 #[test]
 fn what_is_saved_is_loaded_and_a_cut_payload_refused() {
-    assert!(matches!(LEARNT.regression(), Regression::Network(_)));
+    assert!(matches!(LEARNT.regressor(), FittedRegressor::Network(_)));
     roads::survives_its_file(&LEARNT);
 }
 
 #[test]
 fn parts_in_any_order_and_threads_are_the_bytes_of_one_run() {
-    let whole = part(Shard::WHOLE).finish(&Silent).unwrap().to_bytes().unwrap();
+    let whole = part(Shard::WHOLE).finish(&NoProgress).unwrap().to_bytes().unwrap();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
     let joined = pool.install(|| {
         let [first, second] = [1, 2].map(|index| part(Shard::new(index, 2).unwrap()));
-        let mut read = Part::from_bytes(&second.to_bytes().unwrap()).unwrap();
+        let mut read = PartialTraining::from_bytes(&second.to_bytes().unwrap()).unwrap();
         assert_eq!(read, second);
         read.merge(first).unwrap();
-        read.finish(&Silent).unwrap().to_bytes().unwrap()
+        read.finish(&NoProgress).unwrap().to_bytes().unwrap()
     });
     assert!(joined == whole);
 }

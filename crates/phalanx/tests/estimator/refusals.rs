@@ -150,7 +150,7 @@ fn parts_that_do_not_fit_are_refused() {
         let descriptor = Descriptor::new(rule, codes.clone(), ExtraFeatures::Nothing);
         Estimator::from_parts(rig, hand, descriptor, model.clone())
     };
-    let (codes, model) = (estimator.descriptor().codes(), &estimator.regression().models()[0]);
+    let (codes, model) = (estimator.descriptor().codes(), &estimator.regressor().models()[0]);
     let whole = together(rig(), codes, model).unwrap();
     assert_eq!(&whole, estimator);
 
@@ -190,7 +190,7 @@ fn parts_that_do_not_fit_are_refused() {
 
 #[test]
 fn a_regressor_that_overflows_is_named() {
-    let mut parts = FROM_TOP.regression().models()[0].clone().into_parts();
+    let mut parts = FROM_TOP.regressor().models()[0].clone().into_parts();
     parts.weights.fill(1e149);
     parts.column_means.fill(-1e149);
     parts.bias.fill(1e149);

@@ -1,8 +1,8 @@
 //! Training in shards: the same bytes however it is cut, and clear refusals.
 
 use phalanx::{
-    Augmentation, Error, LossReason, OrientationRule, Part, Regressor, Scene, SceneSource,
-    SceneSubset, Shard, Silent, Trainer, Training,
+    Augmentation, Error, LossReason, NoProgress, OrientationRule, PartialTraining, RegressorConfig,
+    Scene, SceneSource, SceneSubset, Shard, Trainer, Training,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, coupled_pose};
@@ -25,10 +25,15 @@ impl Random {
         Self { rig: top(), hand: HandShape::adult(), count }
     }
 
-    fn shard(&self, regressor: &Regressor, index: usize, count: usize) -> Result<Part, Error> {
+    fn shard(
+        &self,
+        regressor: &RegressorConfig,
+        index: usize,
+        count: usize,
+    ) -> Result<PartialTraining, Error> {
         let quick = desk::training(OrientationRule::default());
         let training = Training { regressor: regressor.clone(), ..quick };
-        training.shard(&self.rig, &self.hand, self, Shard::new(index, count)?, &Silent)
+        training.shard(&self.rig, &self.hand, self, Shard::new(index, count)?, &NoProgress)
     }
 }
 
@@ -44,8 +49,8 @@ impl SceneSource for Random {
     }
 }
 
-fn linear() -> Regressor {
-    Regressor::Bridges(AgarwalTriggs {
+fn linear() -> RegressorConfig {
+    RegressorConfig::Bridges(AgarwalTriggs {
         kernel: Kernel::Linear,
         stop: Stop::Count(20),
         ..AgarwalTriggs::default()
@@ -60,13 +65,13 @@ fn merged_shards_are_the_bytes_of_one_run_at_any_number_of_threads() {
         pool.install(|| {
             let parts = shards.iter().map(|&(index, count)| {
                 let part = scenes.shard(&linear(), index, count).unwrap();
-                Part::from_bytes(&part.to_bytes().unwrap()).unwrap()
+                PartialTraining::from_bytes(&part.to_bytes().unwrap()).unwrap()
             });
             let merged = parts.reduce(|mut a, b| {
                 a.merge(b).unwrap();
                 a
             });
-            merged.unwrap().finish(&Silent).unwrap().to_bytes().unwrap()
+            merged.unwrap().finish(&NoProgress).unwrap().to_bytes().unwrap()
         })
     };
     let whole = run(1, &[(1, 1)]);
@@ -78,8 +83,8 @@ fn merged_shards_are_the_bytes_of_one_run_at_any_number_of_threads() {
 #[test]
 fn four_shards_of_kernel_regression_are_one_run() {
     let scenes = Random::new(1100);
-    let nystrom = Regressor::Nystrom(NystromRidge::default());
-    let bytes = |part: Part| part.finish(&Silent).unwrap().to_bytes().unwrap();
+    let nystrom = RegressorConfig::Nystrom(NystromRidge::default());
+    let bytes = |part: PartialTraining| part.finish(&NoProgress).unwrap().to_bytes().unwrap();
     let whole = bytes(scenes.shard(&nystrom, 1, 1).unwrap());
     let mut merged = scenes.shard(&nystrom, 4, 4).unwrap();
     for index in [2, 1, 3] {
@@ -92,7 +97,7 @@ fn four_shards_of_kernel_regression_are_one_run() {
 fn a_missing_or_repeated_part_is_named() {
     let scenes = Random::new(1100);
     let first = scenes.shard(&linear(), 1, 2).unwrap();
-    let error = first.clone().finish(&Silent).unwrap_err();
+    let error = first.clone().finish(&NoProgress).unwrap_err();
     assert_eq!(error.to_string(), "a part is missing: none holds samples 1024 to 1099");
     let error = first.clone().merge(first).unwrap_err();
     assert_eq!(error.to_string(), "two parts both hold samples 0 to 1023");
@@ -100,12 +105,13 @@ fn a_missing_or_repeated_part_is_named() {
 
 #[test]
 fn parts_of_other_trainings_are_refused() {
-    let part =
-        |count: usize, regressor: &Regressor| Random::new(count).shard(regressor, 1, 2).unwrap();
+    let part = |count: usize, regressor: &RegressorConfig| {
+        Random::new(count).shard(regressor, 1, 2).unwrap()
+    };
     let mut one = part(200, &linear());
     let error = one.merge(part(201, &linear())).unwrap_err();
     assert!(error.to_string().ends_with("their numbers of scenes"), "{error}");
-    let gaussian = Regressor::Nystrom(NystromRidge::default());
+    let gaussian = RegressorConfig::Nystrom(NystromRidge::default());
     let error = one.merge(part(200, &gaussian)).unwrap_err();
     assert!(error.to_string().ends_with("their regressors"), "{error}");
 }
@@ -113,8 +119,8 @@ fn parts_of_other_trainings_are_refused() {
 #[test]
 fn more_samples_than_a_regressor_keeps_are_refused_before_any_work() {
     for (regressor, count) in [
-        (Regressor::Cascade(TwoStageSelection::default()), usize::MAX / 2),
-        (Regressor::KernelRidge(KernelRidge::default()), 14_000),
+        (RegressorConfig::Cascade(TwoStageSelection::default()), usize::MAX / 2),
+        (RegressorConfig::KernelRidge(KernelRidge::default()), 14_000),
     ] {
         let error = Random::new(count).shard(&regressor, 1, 1).unwrap_err();
         assert!(matches!(error, Error::TooManySamples { found, .. } if found == count), "{error}");
@@ -124,17 +130,17 @@ fn more_samples_than_a_regressor_keeps_are_refused_before_any_work() {
 #[test]
 fn what_keeps_its_samples_learns_in_shards_too() {
     let scenes = Random::new(1100);
-    let dense = Regressor::KernelRidge(KernelRidge {
+    let dense = RegressorConfig::KernelRidge(KernelRidge {
         bandwidth: Bandwidth::Relative(0.5),
         regularisation: Regularisation::Fixed(0.01),
     });
     let shard = |index, count| {
         let part = scenes.shard(&dense, index, count).unwrap();
-        Part::from_bytes(&part.to_bytes().unwrap()).unwrap()
+        PartialTraining::from_bytes(&part.to_bytes().unwrap()).unwrap()
     };
     let mut merged = shard(2, 2);
     merged.merge(shard(1, 2)).unwrap();
-    assert_eq!(merged.finish(&Silent).unwrap(), shard(1, 1).finish(&Silent).unwrap());
+    assert_eq!(merged.finish(&NoProgress).unwrap(), shard(1, 1).finish(&NoProgress).unwrap());
 }
 
 /// Motion in cycles: every second pose is turned.
@@ -166,17 +172,17 @@ fn a_subset_sees_every_phase_of_a_periodic_motion() {
 #[test]
 fn a_damaged_part_is_refused() {
     let bytes = Random::new(120).shard(&linear(), 1, 1).unwrap().to_bytes().unwrap();
-    assert!(Part::from_bytes(&bytes).is_ok());
+    assert!(PartialTraining::from_bytes(&bytes).is_ok());
     for length in [0, 7, 23, bytes.len() - 1] {
-        assert!(Part::from_bytes(&bytes[..length]).is_err(), "{length} bytes");
+        assert!(PartialTraining::from_bytes(&bytes[..length]).is_err(), "{length} bytes");
     }
     for byte in (0..bytes.len()).step_by(997) {
         let mut flipped = bytes.clone();
         flipped[byte] ^= 0x10;
-        assert!(Part::from_bytes(&flipped).is_err(), "byte {byte}");
+        assert!(PartialTraining::from_bytes(&flipped).is_err(), "byte {byte}");
     }
     let model = b"PHALANX\0and so on";
-    let error = Part::from_bytes(model).unwrap_err();
+    let error = PartialTraining::from_bytes(model).unwrap_err();
     assert!(error.to_string().starts_with("not a phalanx training part"), "{error}");
 }
 
@@ -187,13 +193,13 @@ fn shards_of_a_trainer_are_one_run_with_its_error_model() {
     let trainer = Trainer::new(quick, 1100).error_samples(60);
     let shard = |index, count| {
         let shard = Shard::new(index, count).unwrap();
-        trainer.fit_shard(&rig, &hand, shard, &Silent).unwrap()
+        trainer.fit_shard(&rig, &hand, shard, &NoProgress).unwrap()
     };
     let mut merged = shard(2, 2);
-    merged.merge(Part::from_bytes(&shard(1, 2).to_bytes().unwrap()).unwrap()).unwrap();
-    let merged = merged.finish(&Silent).unwrap();
+    merged.merge(PartialTraining::from_bytes(&shard(1, 2).to_bytes().unwrap()).unwrap()).unwrap();
+    let merged = merged.finish(&NoProgress).unwrap();
     assert!(merged.errors().is_some());
-    assert_eq!(merged, trainer.fit(&rig, &hand, &Silent).unwrap());
+    assert_eq!(merged, trainer.fit(&rig, &hand, &NoProgress).unwrap());
 }
 
 /// Poses of which every so-manieth is out of sight.
@@ -221,13 +227,13 @@ fn lost_scenes_are_counted_with_a_reason_and_too_many_refused() {
     let training = Training { regressor: linear(), ..desk::training(OrientationRule::default()) };
     let learn = |every: usize| {
         let scenes = OutOfSight { all: Random::new(200), every };
-        training.shard(&scenes.all.rig, &scenes.all.hand, &scenes, Shard::WHOLE, &Silent)
+        training.shard(&scenes.all.rig, &scenes.all.hand, &scenes, Shard::WHOLE, &NoProgress)
     };
     let part = learn(40).unwrap();
     let lost: Vec<_> = part.losses().iter().collect();
     assert_eq!(lost, [("top", LossReason::NoHand, 5)]);
-    assert_eq!(Part::from_bytes(&part.to_bytes().unwrap()).unwrap(), part);
-    assert!(part.finish(&Silent).is_ok());
+    assert_eq!(PartialTraining::from_bytes(&part.to_bytes().unwrap()).unwrap(), part);
+    assert!(part.finish(&NoProgress).is_ok());
     let message = learn(10).unwrap_err().to_string();
     let expected = "20 of 200 training scenes cannot be used, more than 5 %: camera 'top': no hand";
     assert!(message.starts_with(expected), "{message}");

@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use phalanx::{Error, OrientationRule, Progress, Regressor, Silent, Training};
+use phalanx::{Error, NoProgress, OrientationRule, Progress, RegressorConfig, Training};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, Side};
 use phalanx_rvm::{
@@ -13,7 +13,7 @@ use phalanx_rvm::{
 use crate::desk::{ESTIMATOR, difference_deg, estimate, masks, poses, rig, top, training, unseen};
 
 fn train(rig: &Rig, poses: &[Pose]) -> phalanx::Result<phalanx::Estimator> {
-    training(OrientationRule::default()).run(rig, &HandShape::adult(), poses, &Silent)
+    training(OrientationRule::default()).run(rig, &HandShape::adult(), poses, &NoProgress)
 }
 
 #[test]
@@ -29,22 +29,22 @@ fn the_same_bytes_at_any_number_of_threads() {
 #[test]
 fn every_regressor_learns() {
     let regressors = [
-        Regressor::Ridge(Ridge::default()),
-        Regressor::Bridges(AgarwalTriggs {
+        RegressorConfig::Ridge(Ridge::default()),
+        RegressorConfig::Bridges(AgarwalTriggs {
             kernel: Kernel::Linear,
             stop: Stop::Count(12),
             ..AgarwalTriggs::default()
         }),
-        Regressor::Cascade(TwoStageSelection {
+        RegressorConfig::Cascade(TwoStageSelection {
             features: Stop::Count(20),
             samples: Stop::Count(20),
             ..TwoStageSelection::default()
         }),
-        Regressor::Forward(OrthogonalLeastSquares {
+        RegressorConfig::Forward(OrthogonalLeastSquares {
             count: 20,
             ..OrthogonalLeastSquares::default()
         }),
-        Regressor::Tipping(RelevanceVectorMachine {
+        RegressorConfig::Tipping(RelevanceVectorMachine {
             kernel: Kernel::Linear,
             ..RelevanceVectorMachine::default()
         }),
@@ -52,7 +52,7 @@ fn every_regressor_learns() {
     for regressor in regressors {
         let name = format!("{regressor:?}");
         let training = Training { regressor, ..training(OrientationRule::default()) };
-        let estimator = training.run(&top(), &HandShape::adult(), &poses(), &Silent).unwrap();
+        let estimator = training.run(&top(), &HandShape::adult(), &poses(), &NoProgress).unwrap();
         let loaded = phalanx::Estimator::from_bytes(&estimator.to_bytes().unwrap()).unwrap();
         assert_eq!(loaded, estimator);
         let pose = unseen()[3];
@@ -70,7 +70,8 @@ fn every_orientation_learns() {
         OrientationRule::PrincipalAxis,
         OrientationRule::HandAxis,
     ] {
-        let estimator = training(rule).run(&top(), &HandShape::adult(), &poses(), &Silent).unwrap();
+        let estimator =
+            training(rule).run(&top(), &HandShape::adult(), &poses(), &NoProgress).unwrap();
         assert_eq!(estimator.orientation(), rule);
         let pose = unseen()[3];
         let found = estimate(&estimator, &masks(&top(), &pose)).unwrap();
@@ -84,7 +85,7 @@ fn a_left_hand_in_a_mirrored_rig_is_learnt_alike() {
     // Seen from straight above, a left hand is the mirror image of a right one.
     let left = HandShape { side: Side::Left, ..HandShape::adult() };
     let training = training(OrientationRule::default());
-    let estimator = training.run(&top(), &left, &poses(), &Silent).unwrap();
+    let estimator = training.run(&top(), &left, &poses(), &NoProgress).unwrap();
     let pose = unseen()[1];
     let mirrored: Vec<_> =
         masks(&top(), &pose).iter().map(image::imageops::flip_vertical).collect();
@@ -145,7 +146,7 @@ fn rigs_hands_and_vocabularies_are_checked() {
     let mut hand = HandShape::adult();
     hand.index.lengths_mm[0] = f64::NAN;
     let rule = OrientationRule::default();
-    let error = training(rule).run(&rig(), &hand, &poses(), &Silent).unwrap_err();
+    let error = training(rule).run(&rig(), &hand, &poses(), &NoProgress).unwrap_err();
     assert!(error.to_string().contains("index.lengths_mm[0]"), "{error}");
 }
 

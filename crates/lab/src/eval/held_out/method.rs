@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use faer::{Mat, MatRef};
-use phalanx::{Preset, Regressor};
+use phalanx::{Preset, RegressorConfig};
 use phalanx_rvm::{Bandwidth, KernelRidge, Model, NystromRidge};
 
 use super::presets::Answer;
@@ -84,7 +84,7 @@ impl Method {
     }
 
     pub(crate) fn fit(self, samples: &Samples, counts: PaperCounts) -> Result<Predictor> {
-        let fitted = |regressor: &Regressor| -> Result<Predictor> {
+        let fitted = |regressor: &RegressorConfig| -> Result<Predictor> {
             Ok(Predictor::Model(Box::new(regressor.fit(&samples.x, &samples.y)?.model)))
         };
         let of_table =
@@ -112,18 +112,18 @@ impl Method {
 const WIDTH: Bandwidth = Bandwidth::Relative(0.5);
 
 /// Gaussian kernel regression with a kernel on each of so many samples or, of more than
-/// [`Regressor::CANDIDATES`], on as many of them.
-fn kernel_regression(samples: usize) -> Regressor {
-    if samples <= Regressor::CANDIDATES {
-        Regressor::KernelRidge(KernelRidge { bandwidth: WIDTH, ..KernelRidge::default() })
+/// [`RegressorConfig::CANDIDATES`], on as many of them.
+fn kernel_regression(samples: usize) -> RegressorConfig {
+    if samples <= RegressorConfig::CANDIDATES {
+        RegressorConfig::KernelRidge(KernelRidge { bandwidth: WIDTH, ..KernelRidge::default() })
     } else {
         nystrom()
     }
 }
 
 /// Gaussian kernel regression on many samples.
-pub(crate) fn nystrom() -> Regressor {
-    Regressor::Nystrom(NystromRidge { bandwidth: WIDTH, ..NystromRidge::default() })
+pub(crate) fn nystrom() -> RegressorConfig {
+    RegressorConfig::Nystrom(NystromRidge { bandwidth: WIDTH, ..NystromRidge::default() })
 }
 
 impl Predictor {

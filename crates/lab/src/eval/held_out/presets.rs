@@ -207,7 +207,7 @@ impl Learnt {
             train_samples: self.samples,
             method: name(self.preset, answer),
             views: self.views.len(),
-            kept_samples: self.estimator.regression().kept_samples(),
+            kept_samples: self.estimator.regressor().kept_samples(),
         };
         outcome.row(test, estimates.as_ref(), guesses.as_ref(), truth, ground)
     }

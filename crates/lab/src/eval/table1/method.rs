@@ -1,7 +1,7 @@
 //! The methods that the table compares.
 
 use clap::ValueEnum;
-use phalanx::Regressor;
+use phalanx::RegressorConfig;
 use phalanx_rvm::{
     AgarwalTriggs, Kernel, KernelRidge, OrthogonalLeastSquares, RelevanceVectorMachine, Stop,
     TwoStageSelection,
@@ -80,34 +80,34 @@ impl Method {
     }
 
     /// The regressor with these counts; `None` for nearest neighbours, which fit nothing.
-    pub(crate) fn regressor(self, counts: Counts) -> Option<Regressor> {
+    pub(crate) fn regressor(self, counts: Counts) -> Option<RegressorConfig> {
         let gaussian = AgarwalTriggs::default().kernel;
         Some(match self {
-            Self::Lin => Regressor::Bridges(AgarwalTriggs {
+            Self::Lin => RegressorConfig::Bridges(AgarwalTriggs {
                 kernel: Kernel::Linear,
                 stop: Stop::Count(counts.lin_features),
                 ..AgarwalTriggs::default()
             }),
-            Self::Gauss => Regressor::Bridges(AgarwalTriggs {
+            Self::Gauss => RegressorConfig::Bridges(AgarwalTriggs {
                 kernel: gaussian,
                 stop: Stop::Count(counts.gauss_samples),
                 ..AgarwalTriggs::default()
             }),
-            Self::Both => Regressor::Cascade(TwoStageSelection {
+            Self::Both => RegressorConfig::Cascade(TwoStageSelection {
                 features: Stop::Count(counts.both_features),
                 samples: Stop::Count(counts.both_samples),
                 ..TwoStageSelection::default()
             }),
-            Self::Forward => Regressor::Forward(OrthogonalLeastSquares {
+            Self::Forward => RegressorConfig::Forward(OrthogonalLeastSquares {
                 kernel: gaussian,
                 count: counts.gauss_samples,
                 ..OrthogonalLeastSquares::default()
             }),
-            Self::TippingLin => Regressor::Tipping(RelevanceVectorMachine {
+            Self::TippingLin => RegressorConfig::Tipping(RelevanceVectorMachine {
                 kernel: Kernel::Linear,
                 ..RelevanceVectorMachine::default()
             }),
-            Self::KernelRidge => Regressor::KernelRidge(KernelRidge::default()),
+            Self::KernelRidge => RegressorConfig::KernelRidge(KernelRidge::default()),
             Self::Knn5 => return None,
         })
     }

@@ -3,7 +3,7 @@
 
 use anyhow::Result;
 use faer::{Mat, MatRef};
-use phalanx::Regressor;
+use phalanx::RegressorConfig;
 use phalanx_hand::Dof;
 use phalanx_multiview::{Estimate, inverse_variance, mean};
 use phalanx_rvm::Regressor as _;
@@ -207,7 +207,7 @@ impl Level<'_> {
 
 impl Kept {
     /// The regressor of one of `parts`.
-    fn regressor(self, counts: PaperCounts, part: usize, parts: usize) -> Regressor {
+    fn regressor(self, counts: PaperCounts, part: usize, parts: usize) -> RegressorConfig {
         let all = counts.gauss_samples;
         let (method, gauss_samples) = match self {
             Self::InAll => (TableMethod::Gauss, all / parts + usize::from(part < all % parts)),

@@ -7,7 +7,7 @@ use anyhow::Result;
 use faer::Mat;
 use image::RgbImage;
 use phalanx::{
-    Estimator, Framing, Observation, Progress, Refiner, Regressor, SceneSource, SceneSubset,
+    Estimator, Framing, Observation, Progress, Refiner, RegressorConfig, SceneSource, SceneSubset,
     Training, Workspace, describe_scenes, targets,
 };
 use phalanx_camera::Rig;
@@ -95,7 +95,7 @@ impl Learning<'_> {
     fn with_few(&self, all: &Estimator) -> Result<Estimator> {
         let Self { rig, hand, samples, progress } = self;
         let set = sets::loosely_placed(rig, hand, *samples);
-        let scenes = SceneSubset::new(&set, Regressor::CANDIDATES);
+        let scenes = SceneSubset::new(&set, RegressorConfig::CANDIDATES);
         let numbers: Vec<usize> = (0..scenes.count()).collect();
         let descriptor = all.descriptor();
         progress.begin("describe for the selection", numbers.len());
@@ -112,7 +112,7 @@ impl Learning<'_> {
             samples: Stop::Count(SAMPLES),
             ..TwoStageSelection::default()
         };
-        let fit = Regressor::Cascade(cascade).fit(&x, &targets(&poses))?;
+        let fit = RegressorConfig::Cascade(cascade).fit(&x, &targets(&poses))?;
         Ok(Estimator::from_parts(rig.clone(), (*hand).clone(), descriptor.clone(), fit.model)?)
     }
 
