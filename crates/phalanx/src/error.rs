@@ -74,7 +74,7 @@ pub enum Error {
     Regression(#[from] phalanx_rvm::Error),
     /// Hypotheses were asked of an estimator that does not know how its estimates err.
     #[error("the estimator has not learnt how its estimates err, so it has no hypotheses")]
-    NoErrors,
+    NoErrorModel,
     /// A codebook of something other than shape contexts.
     #[error(
         "camera '{camera}': its codebook is of {found} bins where shape contexts have {expected}"

@@ -232,7 +232,7 @@ impl Refiner {
         estimate: Estimate,
     ) -> Result<RefinedEstimate> {
         let evidence = self.evidence_of(&estimate.observation)?;
-        let hypotheses = match estimator.errors() {
+        let hypotheses = match estimator.error_model() {
             Some(_) => estimator.hypotheses(&estimate, self.starts())?,
             None => Vec::new(),
         };

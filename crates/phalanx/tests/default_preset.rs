@@ -24,7 +24,7 @@ fn the_default_preset_estimates_unseen_motion_as_the_readme_says() {
     let rig = Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap();
     let hand = HandShape::adult();
     let estimator = Trainer::preset(Preset::Default).fit(&rig, &hand, &NoProgress).unwrap();
-    assert!(estimator.errors().is_some());
+    assert!(estimator.error_model().is_some());
 
     let active: Vec<Dof> =
         Dof::ALL.into_iter().filter(|dof| dof.is_internal() || *dof == Dof::ThetaZ).collect();

@@ -271,7 +271,7 @@ fn hypotheses_are_where_the_windows_show_the_hand() {
         training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
     let poses = poses();
     let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
-    let estimator = estimator.learn_errors(&scenes, &phalanx::NoProgress).unwrap();
+    let estimator = estimator.fit_error_model(&scenes, &phalanx::NoProgress).unwrap();
     let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
     let mut pose = closing(0.4, 20.0);
     pose[Dof::TY] = 20.0;

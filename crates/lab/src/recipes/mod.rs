@@ -27,7 +27,7 @@ pub(crate) fn trained(
     let samples = set.count() - part.losses().count();
     let estimator = part.finish(progress)?;
     let estimator = match fresh {
-        Some(fresh) => estimator.learn_errors(fresh, progress)?,
+        Some(fresh) => estimator.fit_error_model(fresh, progress)?,
         None => estimator,
     };
     Ok(Trained { estimator, samples })

@@ -39,7 +39,11 @@ impl Estimator {
     ///
     /// # Errors
     /// A camera that cannot draw; no scene, or more than [`Losses::MOST`] that cannot be described.
-    pub fn learn_errors(self, scenes: &dyn SceneSource, progress: &dyn Progress) -> Result<Self> {
+    pub fn fit_error_model(
+        self,
+        scenes: &dyn SceneSource,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
         progress.begin("learn what is left open", scenes.count());
         let all: Vec<usize> = (0..scenes.count()).collect();
         let described = describe_scenes(self.rig(), scenes, &all, self.descriptor(), progress)?;
@@ -75,17 +79,17 @@ impl Estimator {
             Unit::Length => MM_PER_RADIAN,
         });
         let (estimates, truth) = (estimates.as_ref(), truth.as_ref());
-        self.with_errors(ResidualKde::fit(estimates, truth, &units, neighbours)?)
+        self.with_error_model(ResidualKde::fit(estimates, truth, &units, neighbours)?)
     }
 
     /// At most `most` poses that may be behind an estimate, the estimate's own first and the others
     /// by falling weight.
     ///
     /// # Errors
-    /// An estimator that has not [learnt how it errs](Self::learn_errors), or no or too many
+    /// An estimator that has not [learnt how it errs](Self::fit_error_model), or no or too many
     /// hypotheses asked for.
     pub fn hypotheses(&self, estimate: &Estimate, most: usize) -> Result<Vec<Hypothesis>> {
-        let errors = self.errors().ok_or(Error::NoErrors)?;
+        let errors = self.error_model().ok_or(Error::NoErrorModel)?;
         let found = errors.hypotheses(&self.unplaced(&estimate.pose).0, most)?;
         let hypothesis = |found: &phalanx_rvm::Hypothesis| {
             let learnt = |dof: usize| estimate.std[dof].and(known(found.std[dof]));

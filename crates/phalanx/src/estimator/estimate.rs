@@ -81,7 +81,7 @@ impl Estimator {
     ///
     /// # Errors
     /// Errors of something other than poses.
-    pub fn with_errors(self, errors: ResidualKde) -> Result<Self> {
+    pub fn with_error_model(self, errors: ResidualKde) -> Result<Self> {
         let (found, expected) = (errors.outputs(), Dof::COUNT);
         if found != expected {
             return Err(Error::Mismatch { part: "numbers in its errors", found, expected });
@@ -119,8 +119,8 @@ impl Estimator {
         &self.regression
     }
 
-    /// How its estimates err, if it has [learnt it](Self::learn_errors).
-    pub fn errors(&self) -> Option<&ResidualKde> {
+    /// How its estimates err, if it has [learnt it](Self::fit_error_model).
+    pub fn error_model(&self) -> Option<&ResidualKde> {
         self.errors.as_ref()
     }
 

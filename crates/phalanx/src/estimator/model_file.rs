@@ -48,7 +48,7 @@ impl Estimator {
                 FittedRegressor::Projected(models) => Stored::Projected(Cow::Borrowed(models)),
                 FittedRegressor::Network(own) => Stored::Network(Cow::Borrowed(own)),
             },
-            errors: self.errors().map(|errors| Cow::Borrowed(errors.parts())),
+            errors: self.error_model().map(|errors| Cow::Borrowed(errors.parts())),
         };
         MODEL.encode(&payload)
     }
@@ -68,7 +68,7 @@ impl Estimator {
         let (rig, hand) = (rig.into_owned(), hand.into_owned());
         let estimator = Self::from_parts(rig, hand, descriptor.into_owned(), regression)?;
         match errors {
-            Some(parts) => estimator.with_errors(ResidualKde::from_parts(parts.into_owned())?),
+            Some(parts) => estimator.with_error_model(ResidualKde::from_parts(parts.into_owned())?),
             None => Ok(estimator),
         }
     }

@@ -174,7 +174,7 @@ impl PartialTraining {
         let estimator = Estimator::from_parts(rig.clone(), hand.clone(), descriptor, regression)?;
         match self.errors {
             Some(ErrorScenes { sampler, count }) => {
-                estimator.learn_errors(&sampler.scenes(&rig, &hand, count), progress)
+                estimator.fit_error_model(&sampler.scenes(&rig, &hand, count), progress)
             }
             None => Ok(estimator),
         }

@@ -17,7 +17,7 @@ fn between() -> Vec<Pose> {
 fn learn() -> phalanx::Result<Estimator> {
     let (rig, hand, poses) = (top(), HandShape::adult(), between());
     let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
-    FROM_TOP.clone().learn_errors(&scenes, &NoProgress)
+    FROM_TOP.clone().fit_error_model(&scenes, &NoProgress)
 }
 
 static LEARNT: LazyLock<Estimator> = LazyLock::new(|| learn().unwrap());
@@ -91,12 +91,12 @@ fn what_is_learnt_is_saved_and_is_the_same_at_any_number_of_threads() {
 #[test]
 fn what_cannot_be_answered_is_named() {
     let estimate = estimate(&FROM_TOP, &masks(&top(), &unseen()[0])).unwrap();
-    assert!(matches!(FROM_TOP.hypotheses(&estimate, 5), Err(Error::NoErrors)));
+    assert!(matches!(FROM_TOP.hypotheses(&estimate, 5), Err(Error::NoErrorModel)));
     for most in [0, 1000] {
         assert!(matches!(LEARNT.hypotheses(&estimate, most), Err(Error::Regression(_))));
     }
     let (rig, hand) = (top(), HandShape::adult());
     let none = FixedPoses { rig: &rig, hand: &hand, poses: &[] };
-    let error = FROM_TOP.clone().learn_errors(&none, &NoProgress).unwrap_err();
+    let error = FROM_TOP.clone().fit_error_model(&none, &NoProgress).unwrap_err();
     assert!(matches!(error, Error::TooFewPoses { found: 0 }), "{error}");
 }

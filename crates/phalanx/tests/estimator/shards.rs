@@ -198,7 +198,7 @@ fn shards_of_a_trainer_are_one_run_with_its_error_model() {
     let mut merged = shard(2, 2);
     merged.merge(PartialTraining::from_bytes(&shard(1, 2).to_bytes().unwrap()).unwrap()).unwrap();
     let merged = merged.finish(&NoProgress).unwrap();
-    assert!(merged.errors().is_some());
+    assert!(merged.error_model().is_some());
     assert_eq!(merged, trainer.fit(&rig, &hand, &NoProgress).unwrap());
 }
 
