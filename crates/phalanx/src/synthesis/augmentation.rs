@@ -73,7 +73,7 @@ impl Default for Augmentation {
 }
 
 impl Augmentation {
-    /// Nothing is damaged.
+    /// No augmentation.
     pub const NONE: Self = Self {
         hands: ShapeVariation::Given,
         camera_turn: 0.0..=0.0,

@@ -69,12 +69,12 @@ pub struct SceneSampler {
     pub augmentation: Augmentation,
     /// The seed of the poses.
     pub pose_seed: u64,
-    /// The seed of the damage.
+    /// The seed of the augmentation.
     pub augmentation_seed: u64,
 }
 
 impl SceneSampler {
-    /// Scenes with the damage that estimators are meant to stand, drawn from seed 0.
+    /// Scenes with the augmentation that estimators are meant to stand, drawn from seed 0.
     pub fn new(poses: PoseSource) -> Self {
         Self { poses, augmentation: Augmentation::default(), pose_seed: 1, augmentation_seed: 2 }
     }
@@ -82,7 +82,7 @@ impl SceneSampler {
     /// The same scenes drawn from another seed. Seeds have no scene in common.
     #[must_use]
     pub fn with_seed(self, seed: u32) -> Self {
-        // The low byte tells apart what is drawn: poses or damage, to learn from or to test with.
+        // The low byte tells apart what is drawn: poses or augmentation, to learn from or to test with.
         let of = |purpose: u64| u64::from(seed) << 8 | purpose;
         Self {
             pose_seed: of(self.pose_seed & 0xff),

@@ -18,7 +18,7 @@ use crate::window::Framing;
 /// the estimator's errors to further scenes.
 ///
 /// ```no_run
-/// use phalanx::{Preset, NoProgress, Trainer};
+/// use phalanx::{NoProgress, Preset, Trainer};
 /// use phalanx_camera::Rig;
 /// use phalanx_hand::HandShape;
 ///
