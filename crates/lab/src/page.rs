@@ -1,4 +1,4 @@
-//! Pages of results in `docs/`: every experiment's page begins alike and says how it was made.
+//! Pages of results in `docs/results/`: every experiment's page begins alike and says how it was made.
 
 use anyhow::Result;
 
@@ -6,7 +6,7 @@ use crate::files;
 
 /// A page that an experiment writes.
 pub(crate) struct Page<'a> {
-    /// Its file in `docs/`.
+    /// Its file in `docs/results/`.
     pub(crate) file: &'static str,
     /// The command that writes it.
     pub(crate) command: &'a str,

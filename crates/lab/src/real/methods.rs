@@ -9,6 +9,7 @@ use super::method::{Method, Outcome, Sequence};
 use super::product::{Estimated, Product, RefinedFrames};
 use super::reference::Reference;
 use super::take::{Input, Take};
+use super::whole_take::{Fits, FramesAlone, WholeTake};
 
 /// What may be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -17,13 +18,18 @@ pub enum MethodName {
     Estimate,
     /// `phalanx estimate --refine`, frame by frame.
     Refined,
+    /// The whole take at once, without a trained model.
+    Take,
+    /// Each frame alone, with the hand that the whole take told.
+    Frame,
     /// A detector's landmarks, triangulated: a baseline.
     Landmarks,
 }
 
 impl MethodName {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Estimate, Self::Refined, Self::Landmarks];
+    pub const ALL: [Self; 5] =
+        [Self::Estimate, Self::Refined, Self::Take, Self::Frame, Self::Landmarks];
 
     /// Whether a take's cameras need a trained model for it.
     fn needs_model(self) -> bool {
@@ -37,20 +43,13 @@ impl MethodName {
             _ => &Input::ALL,
         }
     }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Estimate => "estimate",
-            Self::Refined => "refined",
-            Self::Landmarks => "landmarks",
-        }
-    }
 }
 
 /// What methods need for some of a take's cameras, made once for all of them.
 pub struct Prepared<'a> {
     reference: &'a Reference,
     product: Option<Result<Product>>,
+    fits: Fits,
 }
 
 impl<'a> Prepared<'a> {
@@ -63,17 +62,38 @@ impl<'a> Prepared<'a> {
         progress: &dyn Progress,
     ) -> Self {
         let needed = methods.iter().any(|method| method.needs_model());
-        Self { reference, product: needed.then(|| Product::train(take, views, progress)) }
+        Self {
+            reference,
+            product: needed.then(|| Product::train(take, views, progress)),
+            fits: Fits::new(),
+        }
     }
 
     /// A method, ready to run.
     pub fn method(&self, name: MethodName) -> Box<dyn Method + '_> {
-        match (name, &self.product) {
-            (MethodName::Landmarks, _) => Box::new(Landmarks(self.reference)),
-            (MethodName::Estimate, Some(Ok(product))) => Box::new(Estimated(product)),
-            (MethodName::Refined, Some(Ok(product))) => Box::new(RefinedFrames(product)),
-            (name, Some(Err(error))) => Box::new(Refusing(name.name(), format!("{error:#}"))),
-            (name, None) => Box::new(Refusing(name.name(), "no model was trained".to_owned())),
+        match name {
+            MethodName::Landmarks => Box::new(Landmarks(self.reference)),
+            MethodName::Take => Box::new(WholeTake(&self.fits)),
+            MethodName::Frame => Box::new(FramesAlone(&self.fits)),
+            MethodName::Estimate => {
+                self.trained("estimate", |product| Box::new(Estimated(product)))
+            }
+            MethodName::Refined => {
+                self.trained("refined", |product| Box::new(RefinedFrames(product)))
+            }
+        }
+    }
+
+    /// A method that needs a model; if there is none, it refuses every frame.
+    fn trained<'b>(
+        &'b self,
+        name: &'static str,
+        method: impl Fn(&'b Product) -> Box<dyn Method + 'b>,
+    ) -> Box<dyn Method + 'b> {
+        match &self.product {
+            Some(Ok(product)) => method(product),
+            Some(Err(error)) => Box::new(Refusing(name, format!("{error:#}"))),
+            None => Box::new(Refusing(name, "no model was trained".to_owned())),
         }
     }
 }

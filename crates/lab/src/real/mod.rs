@@ -23,6 +23,7 @@ mod subsets;
 mod table;
 pub mod take;
 pub(crate) mod two_camera;
+pub mod whole_take;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,0 +1,133 @@
+//! Takes fitted without a trained model: `take`, the whole take at once, and `frame`, each frame alone with
+//! the hand that the take told.
+
+use std::sync::OnceLock;
+
+use anyhow::{Result, anyhow};
+use glam::DVec3;
+use image::{DynamicImage, GrayImage};
+use phalanx::{FrameFit, Progress, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take};
+use phalanx_camera::Camera;
+use phalanx_hand::HandShape;
+use phalanx_segmentation::SkinModel;
+
+use super::method::{Found, Method, Outcome, Sequence, each_frame};
+use super::take::Input;
+use crate::clock::timed;
+
+/// The fits of a take through some cameras, each made when it is first asked for.
+pub struct Fits {
+    skin: SkinModel,
+    masks: OnceLock<Fitted>,
+    photographs: OnceLock<Fitted>,
+}
+
+/// A fit, or why there is none, and the CPU time of a frame, ms.
+struct Fitted {
+    take: Result<TakeFit, phalanx::Error>,
+    frame_ms: f64,
+}
+
+impl Fits {
+    /// Nothing is fitted yet.
+    pub fn new() -> Self {
+        let (masks, photographs) = (OnceLock::new(), OnceLock::new());
+        Self { skin: SkinModel::builtin(), masks, photographs }
+    }
+
+    fn of(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<&Fitted> {
+        let cell = match sequence.input {
+            Input::Masks => &self.masks,
+            Input::Photographs => &self.photographs,
+        };
+        if let Some(fitted) = cell.get() {
+            return Ok(fitted);
+        }
+        let frames: Vec<TakeFrame> = (0..sequence.frames.len())
+            .map(|number| Ok(self.frame(sequence.input, &sequence.pictures(number)?)))
+            .collect::<Result<_>>()?;
+        let hand = HandShape { side: sequence.take.side, ..HandShape::adult() };
+        let settings = TakeSettings { hand, ..TakeSettings::default() };
+        let (seconds, take) =
+            timed(|| anyhow::Ok(fit_take(&sequence.cameras(), &frames, &settings, progress)))?;
+        let frame_ms = 1e3 * seconds / frames.len() as f64;
+        Ok(cell.get_or_init(|| Fitted { take, frame_ms }))
+    }
+
+    /// What the cameras saw, as masks.
+    fn frame(&self, input: Input, pictures: &[DynamicImage]) -> TakeFrame {
+        let mask = |picture: &DynamicImage| -> GrayImage {
+            match input {
+                Input::Masks => picture.to_luma8(),
+                Input::Photographs => self.skin.segment(&picture.to_rgb8()),
+            }
+        };
+        TakeFrame { masks: pictures.iter().map(|picture| Some(mask(picture))).collect() }
+    }
+}
+
+impl Default for Fits {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+fn found(cameras: &[Camera], take: &TakeFit, fit: &FrameFit) -> Found {
+    let missing = cameras.iter().zip(&fit.views).filter(|(_, view)| view.missing.is_some());
+    let rest = take.volume.volume.rest_frame();
+    // A joint's deviation is in all directions together.
+    let along_each = |std: f64| DVec3::splat(std / 3.0_f64.sqrt());
+    Found {
+        joints: fit.joints,
+        deviations: Some(fit.joint_std.map(along_each)),
+        doubts: fit.doubts.iter().map(|doubt| format!("{doubt:?}")).collect(),
+        left_out: missing.map(|(camera, _)| camera.name.clone()).collect(),
+        ..Found::posed(&take.hand, &fit.pose, &rest, None)
+    }
+}
+
+/// `phalanx::fit_take`.
+pub struct WholeTake<'a>(pub &'a Fits);
+
+impl Method for WholeTake<'_> {
+    fn name(&self) -> &'static str {
+        "take"
+    }
+
+    fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>> {
+        let Fitted { take, frame_ms } = self.0.of(sequence, progress)?;
+        let cameras = sequence.cameras();
+        let outcome = |number: usize| Outcome {
+            found: match take {
+                Ok(take) => Ok(found(&cameras, take, &take.frames[number])),
+                Err(error) => Err(anyhow!("{error}")),
+            },
+            cpu_ms: Some(*frame_ms),
+        };
+        Ok((0..sequence.frames.len()).map(outcome).collect())
+    }
+}
+
+/// `phalanx::fit_frame` with the hand of the take.
+pub struct FramesAlone<'a>(pub &'a Fits);
+
+impl Method for FramesAlone<'_> {
+    fn name(&self) -> &'static str {
+        "frame"
+    }
+
+    fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>> {
+        let Fitted { take, .. } = self.0.of(sequence, progress)?;
+        let cameras = sequence.cameras();
+        each_frame(
+            sequence,
+            progress,
+            || (),
+            |(), pictures| {
+                let take = take.as_ref().map_err(|error| anyhow!("{error}"))?;
+                let fit = fit_frame(&cameras, &self.0.frame(sequence.input, pictures), take)?;
+                Ok(found(&cameras, take, &fit))
+            },
+        )
+    }
+}
