@@ -43,8 +43,9 @@ pub enum Regularisation {
 /// # fn main() -> phalanx_rvm::Result<()> {
 /// let x = Mat::from_fn(1, 50, |_, t| t as f64 / 8.0);
 /// let y = Mat::from_fn(1, 50, |_, t| x[(0, t)].cos());
-/// let lambda = Regularisation::Loocv(vec![1e-6, 1e-3, 1.0]);
-/// let fit = KernelRidge { lambda, ..KernelRidge::default() }.fit(x.as_ref(), y.as_ref())?;
+/// let regularisation = Regularisation::Loocv(vec![1e-6, 1e-3, 1.0]);
+/// let ridge = KernelRidge { regularisation, ..KernelRidge::default() };
+/// let fit = ridge.fit(x.as_ref(), y.as_ref())?;
 /// assert_eq!(fit.report.penalty, Some(1e-6), "there is no noise to smooth away");
 /// assert_eq!(fit.model.kept_samples().len(), 50);
 /// # Ok(())
