@@ -9,7 +9,8 @@ use phalanx::{Estimator, Picture, Refiner, Segmenter, Workspace};
 use phalanx_refine::{Calibration, CalibrationFrame, CameraDoubt, Doubt, Moves, Refinement};
 use phalanx_segmentation::SkinModel;
 
-use crate::{input, output};
+use crate::input;
+use phalanx_cli::files::Output;
 
 /// More frames tell little more, and each takes its time.
 const MOST_FRAMES: usize = 30;
@@ -37,6 +38,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let output = Output::new(&arguments.out, &[&arguments.model])?;
     let estimator = input::model(&arguments.model)?;
     let names = frame_names(&arguments.frames, &estimator)?;
     let doubt = Doubt::default();
@@ -58,12 +60,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let cameras = cameras.map(|doubt| CameraDoubt { moves: Moves::Never, ..doubt });
     let calibration = Calibration { cameras, ..Calibration::default() };
     let calibrated = refiner.calibrate(&calibration, &frames)?;
-    output::write_whole(&arguments.out, calibrated.hand.to_toml().as_bytes())?;
+    output.write(calibrated.hand.to_toml().as_bytes())?;
     let overlaps: Vec<f64> = calibrated.overlaps.into_iter().flatten().collect();
     let mean = overlaps.iter().sum::<f64>() / overlaps.len() as f64;
-    output::print(&format!(
-        "{}: from {found} frames; silhouettes overlap by {mean:.3}, borders are {:.2} px apart{}\n",
-        arguments.out.display(),
+    output.say(&format!(
+        "from {found} frames; silhouettes overlap by {mean:.3}, borders are {:.2} px apart{}",
         calibrated.border_px,
         if calibrated.converged { "" } else { "; it stopped before it settled" },
     ))

@@ -15,6 +15,7 @@ use phalanx_segmentation::{Silhouette, SkinModel};
 
 use crate::input::{self, Crop};
 use crate::output;
+use phalanx_cli::files::{Output, print};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -39,15 +40,14 @@ pub(crate) struct Arguments {
     /// Print JSON.
     #[arg(long)]
     json: bool,
-    /// Draw what was seen and estimated over the pictures, side by side.
+    /// Draw what was seen and estimated over the pictures, side by side. With `-` it goes to standard
+    /// output, and the estimate to standard error.
     #[arg(long, value_name = "FILE.png")]
     overlay: Option<PathBuf>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    if let Some(path) = arguments.overlay.as_ref().filter(|path| !is_png(path)) {
-        bail!("{}: the overlay is written as PNG; name it so", path.display());
-    }
+    let overlay_to = overlay_output(arguments)?;
     let estimator = input::model(&arguments.model)?;
     let pictures = arguments.images.iter().map(|path| input::picture(path, arguments.crop));
     let pictures = pictures.collect::<Result<Vec<_>>>()?;
@@ -63,18 +63,37 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let hand = hand.unwrap_or_else(|| estimator.hand().clone());
     let estimate =
         if arguments.refine { refine(&estimator, &hand, estimate, &mut doubts)? } else { estimate };
-    if let Some(path) = &arguments.overlay {
-        let overlay = overlay(&estimator, &hand, &estimate, &pictures, &mut doubts)?;
-        output::write_png(path, &overlay)?;
+    if let Some(output) = &overlay_to {
+        // The picture is a by-product: without it the estimate is as good.
+        let drawn = overlay(&estimator, &hand, &estimate, &pictures, &mut doubts);
+        if let Err(error) = drawn.and_then(|picture| output.write_png(&picture)) {
+            doubts.push(format!("there is no overlay: {error:#}"));
+        }
     }
-    for doubt in doubts {
+    for doubt in &doubts {
         eprintln!("phalanx: {doubt}");
     }
-    if arguments.json {
-        output::print(&output::json(&estimator, &estimate)?)
+    let result = if arguments.json {
+        output::json(&estimator, &estimate, &doubts)?
     } else {
-        output::print(&output::text(&estimate))
+        output::text(&estimate)
+    };
+    if overlay_to.is_some_and(|output| output.is_standard_output()) {
+        eprint!("{result}");
+        return Ok(());
     }
+    print(&result)
+}
+
+/// Where the overlay goes, if one is asked for.
+fn overlay_output(arguments: &Arguments) -> Result<Option<Output>> {
+    let Some(path) = &arguments.overlay else { return Ok(None) };
+    let inputs = arguments.images.iter().chain(&arguments.hand).chain([&arguments.model]);
+    let output = Output::new(path, &inputs.collect::<Vec<_>>())?;
+    if output.is_file() && !is_png(path) {
+        bail!("{}: the overlay is written as PNG; name it so", path.display());
+    }
+    Ok(Some(output))
 }
 
 /// The refined estimate. That it did not settle, or that borders stay apart, is a doubt.
@@ -153,8 +172,10 @@ fn overlay(
     for (view, camera) in estimator.rig().cameras.iter().enumerate() {
         let ObservedView { silhouette: observed, window, .. } = &estimate.observation.views[view];
         let drawn_by = window.as_ref().map_or(camera, |window| &window.camera);
-        let drawn = draw_silhouette(drawn_by, hand, &estimate.pose, &rest)?;
-        let estimated = Silhouette::from_mask(&drawn);
+        let drawn = draw_silhouette(drawn_by, hand, &estimate.pose, &rest);
+        let estimated = drawn
+            .map_err(anyhow::Error::from)
+            .and_then(|drawn| Silhouette::from_mask(&drawn).map_err(anyhow::Error::from));
         if let Err(reason) = &estimated {
             let camera = &camera.name;
             doubts.push(format!("camera '{camera}': the estimated hand is not drawn: {reason}"));

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::Args;
 use phalanx_camera::Rig;
+use phalanx_cli::files::Output;
 use phalanx_io::calibration::{Missing, Unit};
 
-use crate::output;
 use crate::rig::calibration;
 use crate::rig::volume::{Vector, VolumeArguments};
 
@@ -30,6 +30,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let output = Output::new(&arguments.out, &[&arguments.calibration])?;
     let files = std::slice::from_ref(&arguments.calibration);
     let missing = Missing { unit: Some(Unit::of_mm(arguments.square_mm)?), size: None };
     let calibration = calibration::read(files, &missing)?;
@@ -41,5 +42,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let rig = Rig { cameras: calibration.cameras, volume: volume.with_context(named)? };
     let text = rig.to_toml().with_context(named)?;
     rig.view_scales().with_context(named)?;
-    output::write_whole(&arguments.out, text.as_bytes())
+    output.write(text.as_bytes())
 }

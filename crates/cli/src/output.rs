@@ -1,11 +1,8 @@
-//! An estimate as text, JSON and picture.
+//! An estimate as text and JSON.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::path::Path;
 
-use anyhow::{Context, Result};
-use image::{ImageFormat, RgbImage};
+use anyhow::Result;
 use phalanx::{Estimate, Estimator};
 use phalanx_hand::{Dof, Unit};
 use phalanx_segmentation::{Evidence, Forearm};
@@ -18,6 +15,8 @@ struct Report<'a> {
     /// 21 joints in the world.
     joints_mm: Vec<[f64; 3]>,
     views: Vec<View<'a>>,
+    /// What should be known before the estimate is trusted.
+    doubts: &'a [String],
 }
 
 /// Each number of the pose by name, in the pose's order.
@@ -61,7 +60,11 @@ struct View<'a> {
 }
 
 /// The estimate as JSON, one object over several lines.
-pub(crate) fn json(estimator: &Estimator, estimate: &Estimate) -> Result<String> {
+pub(crate) fn json(
+    estimator: &Estimator,
+    estimate: &Estimate,
+    doubts: &[String],
+) -> Result<String> {
     let views = views(estimator, estimate).map(|(camera, forearm)| View {
         camera,
         forearm: match forearm.evidence {
@@ -74,6 +77,7 @@ pub(crate) fn json(estimator: &Estimator, estimate: &Estimate) -> Result<String>
         pose: Figures(estimate),
         joints_mm: estimate.joints.map(<[f64; 3]>::from).to_vec(),
         views: views.collect(),
+        doubts,
     };
     Ok(serde_json::to_string_pretty(&report)? + "\n")
 }
@@ -112,42 +116,4 @@ fn views<'a>(
 ) -> impl Iterator<Item = (&'a str, &'a Forearm)> {
     let names = estimator.rig().cameras.iter().map(|camera| camera.name.as_str());
     names.zip(estimate.observation.forearms())
-}
-
-/// Writes a result to standard output.
-pub(crate) fn print(result: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    out.write_all(result.as_bytes()).and_then(|()| out.flush()).context("writing the result")
-}
-
-/// Writes a picture as PNG, whole or not at all.
-pub(crate) fn write_png(path: &Path, picture: &RgbImage) -> Result<()> {
-    let mut png = std::io::Cursor::new(Vec::new());
-    let encoded = picture.write_to(&mut png, ImageFormat::Png);
-    encoded.with_context(|| format!("writing {}", path.display()))?;
-    write_whole(path, png.get_ref())
-}
-
-/// Writes a file under a temporary name and renames it, so that it is never half-written.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let write = || -> Result<()> {
-        let mut file = readable_by_others().tempfile_in(folder)?;
-        file.write_all(bytes)?;
-        file.persist(path)?;
-        Ok(())
-    };
-    write().with_context(|| format!("writing {}", path.display()))
-}
-
-/// Temporary files are private unless asked otherwise; results are not, as far as the umask
-/// allows.
-fn readable_by_others() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder
 }

@@ -13,8 +13,9 @@ use phalanx::{
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose, PoseTable};
 
+use crate::input;
 use crate::progress::Bar;
-use crate::{input, output};
+use phalanx_cli::files::Output;
 
 /// The rig of the examples: three cameras about a desk, `side`, `top` and `other_side`.
 const DESK: &str = include_str!("../fixtures/desk.toml");
@@ -118,6 +119,8 @@ fn samples(text: &str) -> Result<usize, String> {
 }
 
 pub(crate) fn train(arguments: &Arguments) -> Result<()> {
+    let inputs = arguments.rig.iter().chain(&arguments.hand).chain(&arguments.poses);
+    let out = Output::new(&arguments.out, &inputs.collect::<Vec<_>>())?;
     let rig = rig(arguments)?;
     let hand = arguments.hand.as_deref().map(input::hand).transpose()?;
     let hand = hand.unwrap_or_else(HandShape::adult);
@@ -134,7 +137,7 @@ pub(crate) fn train(arguments: &Arguments) -> Result<()> {
     let forecast = Forecast::new(trainer.cost(rig.cameras.len(), shard), rig.cameras.len());
     let part = trainer.fit_shard(&rig, &hand, shard, &forecast)?;
     if arguments.shard.is_none() {
-        return save(&part.finish(&forecast)?, &arguments.out);
+        return save(&part.finish(&forecast)?, &out);
     }
     drop(forecast);
     let lost = part.losses();
@@ -142,11 +145,12 @@ pub(crate) fn train(arguments: &Arguments) -> Result<()> {
         eprintln!("phalanx: {} scenes could not be used: {lost}", lost.count());
     }
     let bytes = part.to_bytes()?;
-    output::write_whole(&arguments.out, &bytes)?;
-    output::print(&format!("{}: {} KiB\n", arguments.out.display(), bytes.len().div_ceil(1024)))
+    out.write(&bytes)?;
+    out.say(&format!("{} KiB", bytes.len().div_ceil(1024)))
 }
 
 pub(crate) fn merge(arguments: &MergeArguments) -> Result<()> {
+    let out = Output::new(&arguments.out, &arguments.parts)?;
     let mut merged: Option<PartialTraining> = None;
     for path in &arguments.parts {
         let name = || path.display().to_string();
@@ -160,7 +164,7 @@ pub(crate) fn merge(arguments: &MergeArguments) -> Result<()> {
     let bar = Bar::new();
     let estimator = merged.context("there is no part")?.finish(&bar)?;
     drop(bar);
-    save(&estimator, &arguments.out)
+    save(&estimator, &out)
 }
 
 /// The rig that is asked for.
@@ -190,14 +194,13 @@ fn poses(path: &Path) -> Result<Vec<Pose>> {
 }
 
 /// Writes a model and says what it is.
-fn save(estimator: &Estimator, out: &Path) -> Result<()> {
+fn save(estimator: &Estimator, out: &Output) -> Result<()> {
     let bytes = estimator.to_bytes()?;
-    output::write_whole(out, &bytes)?;
+    out.write(&bytes)?;
     let cameras = &estimator.rig().cameras;
     let names: Vec<&str> = cameras.iter().map(|camera| camera.name.as_str()).collect();
-    output::print(&format!(
-        "{}: a model for the cameras {}; {} KiB\n",
-        out.display(),
+    out.say(&format!(
+        "a model for the cameras {}; {} KiB",
         names.join(", "),
         bytes.len().div_ceil(1024),
     ))

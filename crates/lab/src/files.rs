@@ -1,11 +1,11 @@
 //! Where the repository's files are, and writing files whole or not at all.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use image::{ImageFormat, RgbImage};
+use image::RgbImage;
 use phalanx_camera::Rig;
+pub use phalanx_cli::files::{Output, print};
 use phalanx_hand::{HandShape, PoseTable};
 
 /// A path within the repository.
@@ -13,33 +13,23 @@ pub fn in_repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
 }
 
-/// Writes a file, and the folder that it is in, under another name and renames it, so that it is
-/// never half-written.
+/// Writes a file whole or not at all, and makes the folder that it is in.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let partial = path.with_added_extension("partial");
-    let write = || -> std::io::Result<()> {
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder)?;
-        }
-        std::fs::write(&partial, bytes)?;
-        std::fs::rename(&partial, path)
-    };
-    write()
-        .inspect_err(|_| drop(std::fs::remove_file(&partial)))
-        .with_context(|| format!("writing {}", path.display()))
-}
-
-/// Writes a result to standard output.
-pub fn print(result: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    out.write_all(result.as_bytes()).and_then(|()| out.flush()).context("writing the result")
+    output(path, &[] as &[&Path])?.write(bytes)
 }
 
 /// Writes a picture as PNG, whole or not at all.
 pub fn write_png(path: &Path, picture: &RgbImage) -> Result<()> {
-    let mut png = std::io::Cursor::new(Vec::new());
-    picture.write_to(&mut png, ImageFormat::Png)?;
-    write_whole(path, png.get_ref())
+    output(path, &[] as &[&Path])?.write_png(picture)
+}
+
+/// The place for a result that is made of some inputs, and none of them; the folder that it is in is
+/// made.
+pub fn output(path: &Path, inputs: &[impl AsRef<Path>]) -> Result<Output> {
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    }
+    Output::new(path, inputs)
 }
 
 /// A hand from its file; the mean adult of the experiments by default.

@@ -21,9 +21,11 @@ impl Majority {
             let here = &pixels[y * width..][..width];
             let out = &mut out[y * width..][..width];
             // All windows between the ends are equally wide.
-            let ends = [radius.min(width), width.saturating_sub(radius).max(radius.min(width))];
-            let each = (0..ends[0]).chain(ends[1]..width).map(|x| x..x + 1);
-            for columns in each.chain([ends[0]..ends[1]]).filter(|columns| !columns.is_empty()) {
+            let left = radius.min(width);
+            let right = width.saturating_sub(radius).max(left);
+            let ends = (0..left).chain(right..width).map(|x| x..x + 1);
+            let middle = (left < right).then_some(left..right);
+            for columns in ends.chain(middle) {
                 let x = columns.start;
                 let voters_across = (x + radius + 1).min(width) - x.saturating_sub(radius);
                 let voters = (voters_down * voters_across) as u16;

@@ -6,9 +6,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use clap::Args;
 use phalanx_camera::{Rig, ViewAngle, ViewScale};
+use phalanx_cli::files::print;
 use serde::Serialize;
-
-use crate::output;
 
 /// Two views nearer than this see a hand alike, degrees: a triangulated point is then five times less
 /// sure along the view than across it (1 / tan 11°).
@@ -70,9 +69,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         );
     }
     if arguments.json {
-        output::print(&(serde_json::to_string_pretty(&report)? + "\n"))
+        print(&(serde_json::to_string_pretty(&report)? + "\n"))
     } else {
-        output::print(&report.table()?)
+        print(&report.table()?)
     }
 }
 

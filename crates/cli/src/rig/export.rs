@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::{Args, ValueEnum};
+use phalanx_cli::files::Output;
 use phalanx_io::calibration::{to_anipose_toml, to_opencv_yaml};
 
-use crate::output;
 use crate::rig::check;
 
 #[derive(Args)]
@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
     /// For which tool.
     #[arg(long)]
     format: Format,
-    /// Where the calibration goes, in millimetres; standard output by default.
+    /// Where the calibration goes, in millimetres; `-`, standard output, by default.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -31,13 +31,12 @@ enum Format {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let out = arguments.out.as_deref().unwrap_or("-".as_ref());
+    let out = Output::new(out, &[&arguments.rig])?;
     let cameras = check::read(&arguments.rig)?.cameras;
     let text = match arguments.format {
         Format::Anipose => to_anipose_toml(&cameras),
         Format::Opencv => to_opencv_yaml(&cameras),
     };
-    match &arguments.out {
-        Some(path) => output::write_whole(path, text.as_bytes()),
-        None => output::print(&text),
-    }
+    out.write(text.as_bytes())
 }

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::Args;
 use phalanx_camera::Rig;
+use phalanx_cli::files::Output;
 use phalanx_io::calibration::{Missing, Unit, camera_distances};
 
-use crate::output;
 use crate::rig::calibration;
 use crate::rig::volume::{Vector, VolumeArguments};
 
@@ -51,6 +51,7 @@ fn size(text: &str) -> Result<(u32, u32)> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { files, unit, square_mm, size, volume, volume_size, out } = arguments;
+    let output = Output::new(out, files)?;
     let missing = Missing { unit: unit.or(*square_mm), size: *size };
     let calibration = calibration::read(files, &missing)?;
     for note in &calibration.notes {
@@ -82,5 +83,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             out.display()
         );
     }
-    output::write_whole(out, text.as_bytes())
+    output.write(text.as_bytes())
 }

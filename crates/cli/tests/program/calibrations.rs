@@ -5,7 +5,7 @@ use tempfile::TempDir;
 
 use crate::desk::{Outcome, run};
 
-const CALIBRATION: &str = r#"{ "cameras": [
+pub(crate) const CALIBRATION: &str = r#"{ "cameras": [
     { "name": "a", "width": 640, "height": 480,
       "camera_matrix": [[600, 0, 319.5], [0, 600, 239.5], [0, 0, 1]],
       "distortion_coefficients": [0, 0, 0, 0, 0],

@@ -219,9 +219,9 @@ fn overlays_that_cannot_be_written() {
     std::fs::create_dir(desk.path("folder.png")).unwrap();
     let before = desk.listing();
     for (overlay, part) in [
-        ("nowhere/overlay.png", "writing nowhere/overlay.png"),
-        ("file/overlay.png", "writing file/overlay.png"),
-        ("folder.png", "writing folder.png"),
+        ("nowhere/overlay.png", "nowhere/overlay.png: there is no folder nowhere"),
+        ("file/overlay.png", "file/overlay.png: there is no folder file"),
+        ("folder.png", "folder.png: this is a folder"),
         ("overlay.jpg", "overlay.jpg: the overlay is written as PNG"),
         ("overlay", "overlay: the overlay is written as PNG"),
     ] {

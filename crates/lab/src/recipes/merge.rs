@@ -6,6 +6,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use phalanx::PartialTraining;
 
+use crate::files;
 use crate::progress;
 use crate::recipes::train;
 
@@ -23,6 +24,7 @@ pub struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let out = files::output(&arguments.out, &arguments.parts)?;
     let mut merged: Option<PartialTraining> = None;
     for path in &arguments.parts {
         let name = || path.display().to_string();
@@ -37,5 +39,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let merged = merged.context("there is no part")?;
     let estimator = train::finish(merged, arguments.hypotheses, &bar)?;
     drop(bar);
-    train::save(&estimator, &arguments.out)
+    train::save(&estimator, &out)
 }

@@ -1,6 +1,6 @@
 //! `cargo xtask train`: learns an estimator and saves it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use anyhow::{Context, Result, ensure};
@@ -16,7 +16,7 @@ use crate::data::data_set::DataSet;
 use crate::data::sets::{self, Augment};
 use crate::eval::held_out::method::nystrom;
 use crate::eval::table1::{PaperCounts, TableMethod};
-use crate::files;
+use crate::files::{self, Output};
 use crate::memory;
 use crate::progress;
 use crate::recipes::preset_name::PresetName;
@@ -117,14 +117,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     files::print(&format!("peak memory: {} MiB\n", bytes.div_ceil(1 << 20)))
 }
 
+/// Where the model goes, or a shard's part.
+fn output(arguments: &Arguments) -> Result<Output> {
+    let out = arguments.out.as_deref().unwrap_or(MODEL.as_ref());
+    let files = arguments.rig.iter().chain(&arguments.hand).chain(&arguments.poses);
+    let files = files.map(PathBuf::as_path).chain([arguments.data_set.as_ref()]);
+    files::output(out, &files.collect::<Vec<_>>())
+}
+
 fn learn(arguments: &Arguments) -> Result<()> {
+    let out = output(arguments)?;
     let hand = files::hand(arguments.hand.as_deref())?;
     let rig = views(&files::rig(arguments.rig.as_deref())?, &arguments.views)?;
     if let Some(name) = arguments.preset {
-        return by_preset(name.preset(), arguments, &rig, &hand);
+        let part = by_preset(name.preset(), arguments, &rig, &hand)?;
+        return write(part, arguments, &out);
     }
     if arguments.data_set == "random" {
-        return random(arguments, &rig, &hand);
+        return write(random(arguments, &rig, &hand)?, arguments, &out);
     }
     ensure!(
         arguments.shard.is_none() && !arguments.augment && arguments.samples.is_none(),
@@ -140,11 +150,11 @@ fn learn(arguments: &Arguments) -> Result<()> {
     let bar = progress::Bar::new();
     let estimator = training.run(&rig, &hand, &data_set.poses, &bar)?;
     drop(bar);
-    save(&estimator, arguments.out.as_deref().unwrap_or(MODEL.as_ref()))
+    save(&estimator, &out)
 }
 
 /// Learns from independent random poses, of which there may be any number.
-fn random(arguments: &Arguments, rig: &Rig, hand: &HandShape) -> Result<()> {
+fn random(arguments: &Arguments, rig: &Rig, hand: &HandShape) -> Result<PartialTraining> {
     let augment = if arguments.augment { Augment::Yes } else { Augment::No };
     let samples = arguments.samples.unwrap_or(RANDOM_SAMPLES);
     let set = sets::random(rig, hand, samples, augment);
@@ -154,13 +164,16 @@ fn random(arguments: &Arguments, rig: &Rig, hand: &HandShape) -> Result<()> {
     };
     let training = Training { regressor, ..Training::default() };
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
-    let bar = progress::Bar::new();
-    let part = training.shard(rig, hand, &set, shard, &bar)?;
-    write(part, arguments, &bar)
+    Ok(training.shard(rig, hand, &set, shard, &progress::Bar::new())?)
 }
 
 /// Learns as a preset says, of the prior's poses or a file's.
-fn by_preset(preset: Preset, arguments: &Arguments, rig: &Rig, hand: &HandShape) -> Result<()> {
+fn by_preset(
+    preset: Preset,
+    arguments: &Arguments,
+    rig: &Rig,
+    hand: &HandShape,
+) -> Result<PartialTraining> {
     let framing = arguments.framing.map_or_else(Framing::default, FramingName::framing);
     let samples = arguments.samples.unwrap_or(preset.scenes());
     let mut trainer = Trainer::preset(preset).framing(framing).samples(samples);
@@ -168,21 +181,17 @@ fn by_preset(preset: Preset, arguments: &Arguments, rig: &Rig, hand: &HandShape)
         trainer = trainer.recorded(files::poses(path)?.poses);
     }
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
-    let bar = progress::Bar::new();
-    let part = trainer.fit_shard(rig, hand, shard, &bar)?;
-    write(part, arguments, &bar)
+    Ok(trainer.fit_shard(rig, hand, shard, &progress::Bar::new())?)
 }
 
 /// Writes the model, or a shard's part.
-fn write(part: PartialTraining, arguments: &Arguments, progress: &dyn Progress) -> Result<()> {
+fn write(part: PartialTraining, arguments: &Arguments, out: &Output) -> Result<()> {
     if arguments.shard.is_none() {
-        let out = arguments.out.as_deref().unwrap_or(MODEL.as_ref());
-        return save(&finish(part, arguments.hypotheses, progress)?, out);
+        return save(&finish(part, arguments.hypotheses, &progress::Bar::new())?, out);
     }
-    let out = arguments.out.as_deref().context("a shard has a place to go to")?;
     let bytes = part.to_bytes()?;
-    files::write_whole(out, &bytes)?;
-    files::print(&format!("{}: {} KiB\n", out.display(), bytes.len().div_ceil(1024)))
+    out.write(&bytes)?;
+    out.say(&format!("{} KiB", bytes.len().div_ceil(1024)))
 }
 
 /// The estimator of a whole training, with a model of its errors if that is asked for.
@@ -195,14 +204,13 @@ pub(crate) fn finish(
 }
 
 /// Writes a model and says what it is.
-pub(crate) fn save(estimator: &Estimator, out: &Path) -> Result<()> {
+pub(crate) fn save(estimator: &Estimator, out: &Output) -> Result<()> {
     let bytes = estimator.to_bytes()?;
-    files::write_whole(out, &bytes)?;
+    out.write(&bytes)?;
     let cameras = &estimator.rig().cameras;
     let names: Vec<&str> = cameras.iter().map(|camera| camera.name.as_str()).collect();
-    files::print(&format!(
-        "{}: learnt through {}; reads {} features, {} kernel centres; {} KiB\n",
-        out.display(),
+    out.say(&format!(
+        "learnt through {}; reads {} features, {} kernel centres; {} KiB",
         names.join(", "),
         estimator.regressor().features(),
         estimator.regressor().kept_samples(),
