@@ -1,5 +1,5 @@
-//! `cargo xtask headline`: the README's tables: the presets and refinement on what was never seen, and
-//! Table 1 beside it.
+//! `cargo xtask headline`: the README's table of presets and refinement on unseen motion, and the table of
+//! the paper's recipe in `docs/results/README.md`.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -13,6 +13,10 @@ use phalanx_lab::files;
 const REFINED: &str = "<!-- refined: written by cargo xtask headline -->\n";
 const PAPER: &str = "<!-- paper: written by cargo xtask headline -->\n";
 const END: &str = "<!-- end -->\n";
+
+/// The pages that the tables are in.
+const FRONT_PAGE: &str = "README.md";
+const RESULTS: &str = "docs/results/README.md";
 
 /// A table whose files are not named stays as it is.
 #[derive(Args)]
@@ -79,27 +83,27 @@ const LINES: [Line; 4] = [
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut tables = Vec::new();
     if let Some(path) = &arguments.refined {
-        tables.push((REFINED, refined(&read(path)?.rows)?));
+        tables.push((FRONT_PAGE, REFINED, refined(&read(path)?.rows)?));
     }
     if let (Some(table1), Some(held_out)) = (&arguments.table1, &arguments.held_out) {
         let of_paper = read(table1)?.rows.into_iter().filter(|row| row.counts == "paper");
         let rows: Vec<Row> = of_paper.chain(read(held_out)?.rows).collect();
-        tables.push((PAPER, paper(&rows)?));
+        tables.push((RESULTS, PAPER, paper(&rows)?));
     }
-    let path = files::in_repository("README.md");
-    let mut readme = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-    for (place, table) in &tables {
-        readme = with_table(&readme, place, table)?;
+    for (page, place, table) in &tables {
+        let path = files::in_repository(page);
+        let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+        let text = with_table(&text, place, table).with_context(|| path.display().to_string())?;
+        files::write_whole(&path, text.as_bytes())?;
     }
-    files::write_whole(&path, readme.as_bytes())?;
-    let tables: Vec<String> = tables.into_iter().map(|(_, table)| table).collect();
+    let tables: Vec<String> = tables.into_iter().map(|(.., table)| table).collect();
     files::print(&tables.join("\n"))
 }
 
 /// The page with a table in its place.
 fn with_table(page: &str, begin: &str, table: &str) -> Result<String> {
-    let (before, rest) = page.split_once(begin).context("README.md: no place for a table")?;
-    let (_, after) = rest.split_once(END).context("README.md: a table's place has no end")?;
+    let (before, rest) = page.split_once(begin).context("there is no place for a table")?;
+    let (_, after) = rest.split_once(END).context("a table's place has no end")?;
     Ok(format!("{before}{begin}{table}{END}{after}"))
 }
 
