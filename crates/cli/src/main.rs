@@ -6,7 +6,9 @@ mod import_calibration;
 mod input;
 mod output;
 mod progress;
+mod recording;
 mod rig;
+mod track;
 mod train;
 
 use std::process::ExitCode;
@@ -15,7 +17,7 @@ use clap::{Parser, Subcommand};
 
 /// Joint angles of a bare hand from pictures of calibrated cameras.
 ///
-/// Exit codes: 0, all done; 2, nothing done or wrong use.
+/// Exit codes: 0, all done; 1, some frames failed and are named; 2, nothing done or wrong use.
 #[derive(Parser)]
 #[command(name = "phalanx", version)]
 struct Arguments {
@@ -29,6 +31,8 @@ enum Command {
     Train(train::Arguments),
     /// Join the parts of a training that was run in shards.
     Merge(train::MergeArguments),
+    /// Fit the hand in every frame of a recording, and write its angles.
+    Track(track::Arguments),
     /// Estimate the pose of a hand from one picture per camera.
     Estimate(estimate::Arguments),
     /// Fit the proportions of a person's hand to pictures of it.
@@ -41,19 +45,22 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let done = match Arguments::parse().command {
-        Command::Train(arguments) => train::train(&arguments),
-        Command::Merge(arguments) => train::merge(&arguments),
-        Command::Estimate(arguments) => estimate::run(&arguments),
-        Command::CalibrateHand(arguments) => calibrate_hand::run(&arguments),
-        Command::Rig(command) => rig::run(&command),
-        Command::ImportCalibration(arguments) => import_calibration::run(&arguments),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("phalanx: {error:#}");
-            ExitCode::from(2)
-        }
+    run(&Arguments::parse().command).unwrap_or_else(|error| {
+        eprintln!("phalanx: {error:#}");
+        ExitCode::from(2)
+    })
+}
+
+/// Runs a command; its exit code tells whether all of it was done.
+fn run(command: &Command) -> anyhow::Result<ExitCode> {
+    match command {
+        Command::Train(arguments) => train::train(arguments)?,
+        Command::Merge(arguments) => train::merge(arguments)?,
+        Command::Track(arguments) => return track::run(arguments),
+        Command::Estimate(arguments) => estimate::run(arguments)?,
+        Command::CalibrateHand(arguments) => calibrate_hand::run(arguments)?,
+        Command::Rig(command) => rig::run(command)?,
+        Command::ImportCalibration(arguments) => import_calibration::run(arguments)?,
     }
+    Ok(ExitCode::SUCCESS)
 }

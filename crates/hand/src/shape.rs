@@ -1,9 +1,9 @@
 //! The proportions of one person's hand.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Result};
+use crate::{Error, Pose, Result};
 
 /// Which hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -182,6 +182,19 @@ impl HandShape {
     /// The four fingers, index first.
     pub fn fingers(&self) -> [&FingerShape; 4] {
         [&self.index, &self.middle, &self.ring, &self.little]
+    }
+
+    /// From the wrist to the tip of the middle finger, all joints straight, mm.
+    ///
+    /// ```
+    /// use phalanx_hand::HandShape;
+    ///
+    /// assert!((HandShape::adult().length_mm() - 185.0).abs() < 1.0);
+    /// ```
+    pub fn length_mm(&self) -> f64 {
+        const MIDDLE_TIP: usize = 12;
+        let joints = self.pose(&Pose::REST, &DAffine3::IDENTITY).joints;
+        joints[MIDDLE_TIP].distance(joints[0])
     }
 
     /// Checks every number.

@@ -1,7 +1,7 @@
 //! `phalanx rig`: rigs of cameras, from other tools and for them.
 
 pub(crate) mod calibration;
-mod check;
+pub(crate) mod check;
 mod export;
 mod import;
 pub(crate) mod volume;

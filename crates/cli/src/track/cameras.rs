@@ -1,0 +1,107 @@
+//! Which recording is which camera's.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail, ensure};
+use phalanx_camera::Camera;
+
+/// The recording of each camera of a rig, in its order; `None` for a camera that has none.
+///
+/// # Errors
+/// More recordings than cameras, a name that no camera has, two recordings of one camera.
+pub(super) fn assign(cameras: &[Camera], recordings: &[String]) -> Result<Vec<Option<PathBuf>>> {
+    if let [folder] = recordings
+        && cameras.len() > 1
+        && let Some(found) = folders_of(cameras, Path::new(folder))
+    {
+        return Ok(found);
+    }
+    let names = || cameras.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>().join(", ");
+    ensure!(
+        recordings.len() <= cameras.len(),
+        "{} recordings for the {} cameras of the rig ({})",
+        recordings.len(),
+        cameras.len(),
+        names()
+    );
+    let mut assigned = vec![None; cameras.len()];
+    let is_named = recordings.iter().all(|recording| named(cameras, recording).is_some());
+    ensure!(
+        is_named || recordings.len() == cameras.len(),
+        "{} recordings for {} cameras: name them, such as {}=PATH; the cameras are {}",
+        recordings.len(),
+        cameras.len(),
+        cameras[0].name,
+        names()
+    );
+    for (k, recording) in recordings.iter().enumerate() {
+        let (camera, path) =
+            if is_named { named(cameras, recording).context("named")? } else { (k, &**recording) };
+        if assigned[camera].replace(PathBuf::from(path)).is_some() {
+            bail!("camera '{}' has two recordings", cameras[camera].name);
+        }
+    }
+    Ok(assigned)
+}
+
+/// A recording as `NAME=PATH`.
+fn named<'a>(cameras: &[Camera], recording: &'a str) -> Option<(usize, &'a str)> {
+    let (name, path) = recording.split_once('=')?;
+    Some((cameras.iter().position(|camera| camera.name == name)?, path))
+}
+
+/// What a folder holds for each camera: a folder or a file of its name; `None` where it holds nothing for any.
+fn folders_of(cameras: &[Camera], folder: &Path) -> Option<Vec<Option<PathBuf>>> {
+    let entries: Vec<PathBuf> =
+        std::fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    let of = |camera: &Camera| {
+        let mut own = entries.iter().filter(|path| {
+            let name = if path.is_dir() { path.file_name() } else { path.file_stem() };
+            name.is_some_and(|name| name.to_string_lossy() == camera.name)
+        });
+        own.next().cloned()
+    };
+    let found: Vec<Option<PathBuf>> = cameras.iter().map(of).collect();
+    found.iter().any(Option::is_some).then_some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use phalanx_camera::Rig;
+
+    use super::*;
+
+    fn cameras() -> Vec<Camera> {
+        Rig::from_toml(include_str!("../../fixtures/desk.toml")).unwrap().cameras
+    }
+
+    fn assigned(recordings: &[&str]) -> Result<Vec<Option<PathBuf>>> {
+        let recordings: Vec<String> = recordings.iter().map(|&text| text.to_owned()).collect();
+        assign(&cameras(), &recordings)
+    }
+
+    #[test]
+    fn recordings_go_by_order_or_by_name() {
+        let [a, b, c] = ["a.mp4", "b.mp4", "c.mp4"].map(|path| Some(PathBuf::from(path)));
+        let in_order = assigned(&["a.mp4", "b.mp4", "c.mp4"]).unwrap();
+        assert_eq!(in_order, [a.clone(), b, c.clone()]);
+        let names: Vec<String> = cameras().into_iter().map(|camera| camera.name).collect();
+        let (first, last) = (format!("{}=a.mp4", names[0]), format!("{}=c.mp4", names[2]));
+        assert_eq!(assigned(&[&last, &first]).unwrap(), [a, None, c]);
+        for wrong in [&["a"; 4][..], &["a", "b"], &[&first, &first]] {
+            assert!(assigned(wrong).is_err(), "{wrong:?}");
+        }
+    }
+
+    #[test]
+    fn one_folder_may_hold_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let cameras = cameras();
+        std::fs::create_dir(folder.path().join(&cameras[1].name)).unwrap();
+        std::fs::write(folder.path().join(format!("{}.mp4", cameras[2].name)), b"").unwrap();
+        let found = assigned(&[&folder.path().display().to_string()]).unwrap();
+        assert_eq!(found[0], None);
+        assert!(found[1].as_ref().unwrap().is_dir());
+        assert!(found[2].as_ref().unwrap().is_file());
+    }
+}

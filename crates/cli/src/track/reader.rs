@@ -1,0 +1,118 @@
+//! The masks of a recording's moments, one after the other.
+
+use std::path::PathBuf;
+
+use anyhow::{Result, ensure};
+use image::{DynamicImage, GrayImage};
+use phalanx::TakeFrame;
+use phalanx_camera::Camera;
+use phalanx_segmentation::SkinModel;
+
+use crate::recording::timeline::{Moment, Timeline};
+use crate::recording::{self, Recording, Stamp};
+
+/// How the hand is told from the rest of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pictures {
+    /// By the colour of skin.
+    Photographs,
+    /// They are masks: brighter than 127 is hand.
+    Masks,
+}
+
+/// Reads what all cameras recorded.
+pub(super) struct Reader<'a> {
+    cameras: &'a [Camera],
+    recordings: Vec<Box<dyn Recording>>,
+    pictures: Pictures,
+    pub(super) timeline: Timeline,
+}
+
+/// What the cameras saw at a moment, and what could not be read of it.
+pub(super) struct Seen {
+    pub(super) frame: TakeFrame,
+    pub(super) failures: Vec<String>,
+}
+
+impl<'a> Reader<'a> {
+    /// Opens the recordings of cameras. `times` are the cameras' frame times, where they were written apart.
+    ///
+    /// # Errors
+    /// A recording that cannot be opened, another number of times than frames, nothing to match frames by.
+    pub(super) fn open(
+        cameras: &'a [Camera],
+        paths: &[PathBuf],
+        times: &[Option<Vec<f64>>],
+        pictures: Pictures,
+    ) -> Result<Self> {
+        let recordings: Vec<Box<dyn Recording>> =
+            paths.iter().map(|path| recording::open(path)).collect::<Result<_>>()?;
+        let mut stamps: Vec<Vec<Stamp>> = Vec::new();
+        for ((recording, camera), times) in recordings.iter().zip(cameras).zip(times) {
+            stamps.push(with_times(recording.stamps(), camera, times.as_deref())?);
+        }
+        let stamps: Vec<&[Stamp]> = stamps.iter().map(Vec::as_slice).collect();
+        let timeline = Timeline::new(&stamps);
+        let shared =
+            timeline.moments.iter().any(|moment| moment.frames.iter().flatten().count() > 1);
+        ensure!(
+            cameras.len() == 1 || shared,
+            "no two cameras have a frame of one moment: give pictures of one moment the same name in every \
+             folder, or a timestamps file"
+        );
+        Ok(Self { cameras, recordings, pictures, timeline })
+    }
+
+    /// The moments.
+    pub(super) fn moments(&self) -> &[Moment] {
+        &self.timeline.moments
+    }
+
+    /// Reads a moment that comes after the last one read.
+    pub(super) fn read(&mut self, moment: usize) -> Seen {
+        let mut failures = Vec::new();
+        let mut masks = Vec::new();
+        for (view, recording) in self.recordings.iter_mut().enumerate() {
+            let Some(frame) = self.timeline.moments[moment].frames[view] else {
+                masks.push(None);
+                continue;
+            };
+            let camera = &self.cameras[view];
+            let read = recording.read(frame);
+            let mask = read.and_then(|picture| mask(&picture, camera, self.pictures));
+            masks.push(
+                mask.map_err(|error| failures.push(format!("{}: {error:#}", camera.name))).ok(),
+            );
+        }
+        Seen { frame: TakeFrame { masks }, failures }
+    }
+}
+
+fn with_times(stamps: &[Stamp], camera: &Camera, times: Option<&[f64]>) -> Result<Vec<Stamp>> {
+    let Some(times) = times else { return Ok(stamps.to_vec()) };
+    ensure!(
+        times.len() == stamps.len(),
+        "camera '{}' has {} frames, but {} times",
+        camera.name,
+        stamps.len(),
+        times.len()
+    );
+    let with_time = |(stamp, &time): (&Stamp, &f64)| Stamp { time: Some(time), ..stamp.clone() };
+    Ok(stamps.iter().zip(times).map(with_time).collect())
+}
+
+/// The mask of a picture, which must be a scaled copy of the camera's image to within a pixel.
+fn mask(picture: &DynamicImage, camera: &Camera, pictures: Pictures) -> Result<GrayImage> {
+    let (width, height) = (picture.width(), picture.height());
+    let (own_width, own_height) = (camera.intrinsics.width, camera.intrinsics.height);
+    let fitting = f64::from(width) * f64::from(own_height) / f64::from(own_width);
+    ensure!(
+        (fitting - f64::from(height)).abs() <= 1.0,
+        "the picture has {width}×{height} px, but the camera was calibrated for {own_width}×{own_height}; \
+         is it turned or cropped?"
+    );
+    Ok(match pictures {
+        Pictures::Masks => picture.to_luma8(),
+        Pictures::Photographs => SkinModel::builtin().segment(&picture.to_rgb8()),
+    })
+}

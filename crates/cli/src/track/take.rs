@@ -1,0 +1,75 @@
+//! A fitted take as it is written.
+
+use phalanx::{FitDoubt, FrameFit, Missing, TakeFit};
+use phalanx_camera::Camera;
+use phalanx_io::take::{FrameView, PoseEstimate, TakeFrame, TakeHeader};
+
+use crate::recording::timeline::Moment;
+
+/// What holds for all frames.
+pub(super) fn header(cameras: &[Camera], fit: &TakeFit, rate_hz: Option<f64>) -> TakeHeader {
+    TakeHeader {
+        hand: fit.hand.clone(),
+        world_from_hand: fit.volume.volume.rest_frame(),
+        views: cameras.iter().map(|camera| camera.name.clone()).collect(),
+        rate_hz,
+        model: None,
+    }
+}
+
+/// One frame. Where no view shows a hand, there is no pose.
+pub(super) fn frame(
+    cameras: &[Camera],
+    (index, moment): (usize, &Moment),
+    time: f64,
+    fit: Option<&FrameFit>,
+) -> TakeFrame {
+    let Some(fit) = fit.filter(|fit| !fit.doubts.contains(&FitDoubt::NotSeen)) else {
+        return TakeFrame {
+            index: index as u64,
+            time,
+            estimate: None,
+            views: vec![FrameView::default(); cameras.len()],
+            doubts: vec!["no-hand".to_owned()],
+        };
+    };
+    let estimate = PoseEstimate {
+        pose: fit.pose,
+        std: fit.std.map(Some),
+        joints: fit.joints,
+        joint_std: Some(fit.joint_std.map(|std| glam::DVec3::splat(std / 3.0_f64.sqrt()))),
+    };
+    let views = fit
+        .views
+        .iter()
+        .map(|view| FrameView { used: view.missing.is_none(), overlap: view.overlap });
+    let mut doubts: Vec<String> = fit.doubts.iter().map(|doubt| code(doubt, cameras)).collect();
+    for (view, camera) in fit.views.iter().zip(cameras) {
+        if view.missing == Some(Missing::Disagrees) {
+            doubts.push(format!("view-disagrees:{}", camera.name));
+        }
+    }
+    let absent = moment.frames.iter().zip(&fit.views).zip(cameras);
+    for ((picture, view), camera) in absent {
+        if picture.is_some() && view.missing == Some(Missing::NoHand) {
+            doubts.push(format!("view-shows-no-hand:{}", camera.name));
+        }
+    }
+    TakeFrame {
+        index: index as u64,
+        time,
+        estimate: Some(estimate),
+        views: views.collect(),
+        doubts,
+    }
+}
+
+/// A doubt in one word, with the camera that it is about.
+fn code(doubt: &FitDoubt, cameras: &[Camera]) -> String {
+    match doubt {
+        FitDoubt::NotSeen => "no-hand".to_owned(),
+        FitDoubt::PoorFit { .. } => "poor-fit".to_owned(),
+        FitDoubt::CutOff { view } => format!("cut-off:{}", cameras[*view].name),
+        _ => "doubtful".to_owned(),
+    }
+}
