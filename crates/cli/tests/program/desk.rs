@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::LazyLock;
 
+use glam::DVec3;
 use image::DynamicImage;
 use phalanx::{Estimator, NoProgress, Training, draw_silhouette};
 use phalanx_camera::Rig;
-use phalanx_hand::{Digit, Dof, HandShape, Pose};
+use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
 use phalanx_multiview::Vocabulary;
 use phalanx_render::{Appearance, Renderer};
 use tempfile::TempDir;
@@ -94,6 +95,16 @@ impl Desk {
             let mask = draw_silhouette(&camera, &HandShape::adult(), &closing(closed), &rest);
             mask.unwrap().save(folder.join(name)).unwrap();
         }
+    }
+
+    /// Where the joints of the hand are that is drawn closed by so much, mm.
+    pub(crate) fn joints(closed: f64) -> [DVec3; JOINTS] {
+        HandShape::adult().pose(&closing(closed), &rig().volume.rest_frame()).joints
+    }
+
+    /// Writes the rig of the cameras.
+    pub(crate) fn write_rig(&self, name: &str) {
+        self.write(name, rig().to_toml().unwrap().as_bytes());
     }
 
     pub(crate) fn open(&self, name: &str) -> DynamicImage {

@@ -7,4 +7,5 @@ mod outputs;
 mod refinements;
 mod refusals;
 mod rigs;
+mod tracks;
 mod trainings;

@@ -1,0 +1,126 @@
+//! `phalanx track` on drawn recordings.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::desk::{CAMERAS, Desk, Outcome, run};
+use phalanx_io::take::{Take, read_csv};
+
+/// How far the hand is closed in a frame.
+fn closed(frame: usize) -> f64 {
+    0.5 - 0.5 * (0.9 * frame as f64).cos()
+}
+
+/// The desk's rig with both cameras, and masks of a hand that closes and opens.
+fn recorded(frames: usize) -> Desk {
+    let desk = Desk::new();
+    desk.write_rig("rig.toml");
+    for frame in 0..frames {
+        desk.draw_frame("take", &format!("{frame:04}.png"), closed(frame));
+    }
+    desk
+}
+
+fn track(desk: &Desk, arguments: &[&str]) -> Outcome {
+    run(desk.folder(), ["track", "--rig", "rig.toml", "--mask"].iter().chain(arguments))
+}
+
+fn take(desk: &Desk, name: &str) -> Take {
+    read_csv(desk.read(name).as_slice()).unwrap()
+}
+
+/// Mean distance of the joints from where they were drawn, mm.
+fn error_mm(take: &Take) -> f64 {
+    let mut distances = Vec::new();
+    for (number, frame) in take.frames.iter().enumerate() {
+        let drawn = Desk::joints(closed(number));
+        let estimate = frame.estimate.as_ref().unwrap();
+        distances.extend(estimate.joints.iter().zip(drawn).map(|(at, drawn)| at.distance(drawn)));
+    }
+    distances.iter().sum::<f64>() / distances.len() as f64
+}
+
+#[test]
+fn folders_of_masks_become_angles() {
+    let desk = recorded(8);
+    let outcome =
+        track(&desk, &["take", "--out", "take.csv", "--rate", "10", "--save-hand", "me.toml"]);
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    let whole = take(&desk, "take.csv");
+    assert_eq!(whole.frames.len(), 8);
+    assert!((whole.frames[3].time - 0.3).abs() < 1e-9);
+    let error = error_mm(&whole);
+    assert!(error < 8.0, "{error} mm");
+
+    // Named one by one, and with the hand that was saved, it is the same recording.
+    let named = [
+        format!("{}=take/{}", CAMERAS[1], CAMERAS[1]),
+        format!("{}=take/{}", CAMERAS[0], CAMERAS[0]),
+    ];
+    let outcome = track(&desk, &[&named[0], &named[1], "--hand", "me.toml", "--out", "again.csv"]);
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    let error = error_mm(&take(&desk, "again.csv"));
+    assert!(error < 8.0, "{error} mm");
+}
+
+#[test]
+fn what_cannot_be_read_is_named_and_the_rest_is_done() {
+    let desk = recorded(6);
+    desk.write(&format!("take/{}/0002.png", CAMERAS[0]), b"no picture");
+    std::fs::remove_file(desk.path(&format!("take/{}/0004.png", CAMERAS[1]))).unwrap();
+    let outcome = track(&desk, &["take", "--out", "take.jsonl"]);
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    assert!(outcome.err.contains(&format!("frame 0002, camera {}", CAMERAS[0])), "{outcome:?}");
+    assert!(outcome.err.contains("has no frame at 1 moments"), "{outcome:?}");
+    assert_eq!(String::from_utf8(desk.read("take.jsonl")).unwrap().lines().count(), 1 + 6);
+}
+
+#[test]
+fn wrong_use_is_refused_by_name() {
+    let desk = recorded(2);
+    for (arguments, words) in [
+        (&["take", "--out", "take.trc"][..], ".csv, .jsonl or .npz"),
+        (&["nowhere", "elsewhere", "--out", "t.csv"], "nowhere"),
+        (&["a", "b", "c", "--out", "t.csv"], "3 recordings for the 2 cameras"),
+        (&["take", "--hand", "me.toml", "--out", "t.csv"], "me.toml"),
+        (&["take", "--timestamps", "times.csv", "--out", "t.csv"], "times.csv"),
+    ] {
+        let outcome = track(&desk, arguments);
+        assert_eq!(outcome.code, Some(2), "{outcome:?}");
+        assert!(outcome.err.contains(words), "{outcome:?}");
+    }
+    desk.save(&format!("take/{}/0000.png", CAMERAS[0]), &image::DynamicImage::new_luma8(90, 120));
+    let outcome = track(&desk, &["take", "--out", "t.csv"]);
+    assert!(outcome.err.contains("is it turned or cropped?"), "{outcome:?}");
+}
+
+#[test]
+fn videos_give_the_angles_of_their_pictures() {
+    if Command::new("ffmpeg").arg("-version").output().is_err() {
+        eprintln!("skipped: ffmpeg, which makes the test's videos, is not installed");
+        return;
+    }
+    let desk = recorded(6);
+    for camera in CAMERAS {
+        encode(&desk.path(&format!("take/{camera}")), &desk.path(&format!("{camera}.mp4")));
+        encode(&desk.path(&format!("take/{camera}")), &desk.path(&format!("{camera}.mkv")));
+    }
+    for ending in ["mp4", "mkv"] {
+        let videos = CAMERAS.map(|camera| format!("{camera}.{ending}"));
+        let outcome = track(&desk, &[&videos[0], &videos[1], "--out", "video.csv"]);
+        assert_eq!(outcome.code, Some(0), "{outcome:?}");
+        let video = take(&desk, "video.csv");
+        assert_eq!(video.frames.len(), 6);
+        assert!((video.frames[5].time - 0.5).abs() < 1e-6);
+        let error = error_mm(&video);
+        assert!(error < 8.0, "{ending}: {error} mm");
+    }
+}
+
+/// Ten pictures a second as H.264, with frames that are stored out of order.
+fn encode(folder: &Path, video: &Path) {
+    let mut ffmpeg = Command::new("ffmpeg");
+    ffmpeg.args(["-v", "error", "-y", "-framerate", "10", "-i"]).arg(folder.join("%04d.png"));
+    ffmpeg.args(["-c:v", "libx264", "-bf", "2", "-crf", "10", "-pix_fmt", "yuv420p"]).arg(video);
+    assert!(ffmpeg.status().unwrap().success());
+}
