@@ -36,7 +36,9 @@ fn parse(text: &str) -> Result<BTreeMap<String, Vec<f64>>> {
         ensure!(seconds.is_finite(), "line {}: {time} is not a time", number + 1);
         times.entry((*camera).to_owned()).or_default().push(seconds);
     }
-    times.values_mut().for_each(|times| times.sort_by(f64::total_cmp));
+    for times in times.values_mut() {
+        times.sort_by(f64::total_cmp);
+    }
     Ok(times)
 }
 

@@ -13,6 +13,7 @@ use phalanx::{
     FrameFit, Progress, Proportions, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take,
 };
 use phalanx_camera::{Camera, Rig};
+use phalanx_cli::files::Output;
 use phalanx_hand::{HandShape, Side};
 use phalanx_io::take::{Take, write_csv, write_json_lines, write_npz};
 use rayon::prelude::*;
@@ -21,7 +22,7 @@ use self::reader::{Pictures, Reader, Seen};
 use crate::progress::Bar;
 use crate::recording::timeline::Timeline;
 use crate::rig::check;
-use crate::{input, output, recording};
+use crate::{input, recording};
 
 /// Recordings of up to so many moments are fitted as a whole. Of longer ones as many moments, evenly spread,
 /// tell the hand, and then every frame is fitted with it, so that memory does not grow with the recording.
@@ -79,6 +80,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let kind = kind(&arguments.out)?;
     let rig = check::read(&arguments.rig)?;
     let (cameras, paths) = cameras_and_paths(&rig, &arguments.recordings)?;
+    let given = [Some(&arguments.rig), arguments.hand.as_ref(), arguments.timestamps.as_ref()];
+    let inputs: Vec<&PathBuf> = paths.iter().chain(given.into_iter().flatten()).collect();
+    let out = Output::new(&arguments.out, &inputs)?;
+    let hand_out = arguments.save_hand.as_ref().map(|path| Output::new(path, &inputs));
+    let hand_out = hand_out.transpose()?;
     let times = times(arguments, &cameras)?;
     let pictures = if arguments.mask { Pictures::Masks } else { Pictures::Photographs };
     let open = || Reader::open(&cameras, &paths, &times, pictures);
@@ -88,9 +94,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let mut failures = Vec::new();
     let (fit, frames) = fit(&cameras, reader, open, &settings, &mut failures)?;
     let take = written(&cameras, &open()?.timeline, &fit, &frames, arguments.rate);
-    save(&take, &arguments.out, &kind)?;
-    if let Some(path) = &arguments.save_hand {
-        output::write_whole(path, fit.hand.to_toml().as_bytes())?;
+    out.write(&encoded(&take, &kind)?)?;
+    if let Some(out) = hand_out {
+        out.write(fit.hand.to_toml().as_bytes())?;
     }
     conclude(&take, &fit, &arguments.out, &failures)
 }
@@ -234,14 +240,15 @@ fn written(
     Take { header, frames: frames.iter().enumerate().map(frame).collect() }
 }
 
-fn save(take: &Take, out: &Path, kind: &str) -> Result<()> {
+/// The take as a file of a kind.
+fn encoded(take: &Take, kind: &str) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     match kind {
         "jsonl" => write_json_lines(take, &mut bytes)?,
         "npz" => bytes = write_npz(take)?,
         _ => write_csv(take, &mut bytes)?,
     }
-    output::write_whole(out, &bytes)
+    Ok(bytes)
 }
 
 /// Says how it went; some frames that could not be read make another exit code.
