@@ -3,7 +3,9 @@
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Extrinsics, Intrinsics, Result};
+use crate::error::{Error, Result};
+use crate::extrinsics::Extrinsics;
+use crate::intrinsics::Intrinsics;
 
 /// A half-line in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// Where a camera stands: x_cam = R x_world + t, with x to the right of the image, y down it
 /// and z along the view.

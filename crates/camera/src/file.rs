@@ -3,9 +3,13 @@
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    Camera, Distortion, Error, Extrinsics, Fisheye, Intrinsics, Lens, Result, Rig, Volume,
-};
+use crate::camera::Camera;
+use crate::error::{Error, Result};
+use crate::extrinsics::Extrinsics;
+use crate::intrinsics::Intrinsics;
+use crate::lens::{Distortion, Fisheye, Lens};
+use crate::rig::Rig;
+use crate::volume::Volume;
 
 const HEADER: &str = "\
 # Lengths in mm. Pixel centres are at integer + 0.5: an image spans 0 to width and 0 to height,

@@ -3,7 +3,8 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Lens, Result};
+use crate::error::{Error, Result};
+use crate::lens::Lens;
 
 /// A camera's inside, in pixels, with pixel centres at integer + 0.5: the image spans
 /// 0 to `width` and 0 to `height`, x to the right and y down.

@@ -3,7 +3,9 @@
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::{Camera, Error, Result, Volume};
+use crate::camera::Camera;
+use crate::error::{Error, Result};
+use crate::volume::Volume;
 
 /// Any number of calibrated cameras and the volume in which the hand works.
 ///

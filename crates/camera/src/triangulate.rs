@@ -2,7 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::{Error, Ray, Result};
+use crate::camera::Ray;
+use crate::error::{Error, Result};
 
 /// The point nearest to several rays.
 #[derive(Debug, Clone, Copy, PartialEq)]

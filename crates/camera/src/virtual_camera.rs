@@ -2,7 +2,10 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use crate::{Camera, Error, Extrinsics, Intrinsics, Result};
+use crate::camera::Camera;
+use crate::error::{Error, Result};
+use crate::extrinsics::Extrinsics;
+use crate::intrinsics::Intrinsics;
 
 impl Camera {
     /// A virtual camera: this one turned about its centre, so that its axis goes along `ahead`

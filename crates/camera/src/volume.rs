@@ -3,7 +3,9 @@
 use glam::{DAffine3, DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::{Camera, Error, Ray, Result, triangulate};
+use crate::camera::{Camera, Ray};
+use crate::error::{Error, Result};
+use crate::triangulate::triangulate;
 
 /// Where the hand works in the world.
 ///

@@ -1,9 +1,8 @@
 //! Files in which each key names a field and a camera: `K_01`, `dist_01`, `M1`, `D1`, `left_K`.
 
-use crate::calibration::MOST_CAMERAS;
 use crate::calibration::fields::Field;
-use crate::calibration::layout::Map2;
-use crate::calibration::value::{Map, Value, get};
+use crate::calibration::record::MOST_CAMERAS;
+use crate::calibration::value::{Map, Sections, Value, get};
 
 /// The fields that may stand so.
 const FIELDS: [Field; 9] = [
@@ -22,9 +21,9 @@ const FIELDS: [Field; 9] = [
 const PASSED: [&str; 7] = ["E", "F", "Q", "P", "names", "unit", "metadata"];
 
 /// The cameras, and the keys that nothing is known of.
-pub(super) fn sections(root: &Map) -> Option<(Map2, Vec<String>)> {
+pub(super) fn sections(root: &Map) -> Option<(Sections, Vec<String>)> {
     let is_rectified = ["P1", "P2", "Q"].iter().any(|key| get(root, key).is_some());
-    let mut sections = Map2::new();
+    let mut sections = Sections::new();
     let mut shared = Map::new();
     let mut unknown = Vec::new();
     let names = listed(root);
@@ -67,7 +66,7 @@ fn listed(root: &Map) -> Vec<String> {
     }
 }
 
-fn add(sections: &mut Map2, name: String, field: &str, value: &Value) {
+fn add(sections: &mut Sections, name: String, field: &str, value: &Value) {
     let entry = (field.to_owned(), value.clone());
     match sections.iter_mut().find(|(known, _)| *known == name) {
         Some((_, map)) => map.push(entry),
@@ -119,7 +118,7 @@ fn split<'a>(key: &'a str, value: &Value, names: &[String]) -> Option<(&'a str, 
 
 /// Gives the cameras what stands once for all: a picture size, and the second camera's pose from the
 /// first.
-fn share(sections: &mut Map2, shared: &Map) {
+fn share(sections: &mut Sections, shared: &Map) {
     let has = |map: &Map, field| map.iter().any(|(key, _)| Field::of(key) == field);
     let posed = |map: &Map| has(map, Field::Rotation) && has(map, Field::Translation);
     let is_pose = |entry: &&(String, Value)| {

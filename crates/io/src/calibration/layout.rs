@@ -3,7 +3,7 @@
 use crate::calibration::document::Document;
 use crate::calibration::fields::{Field, Fields, is_camera};
 use crate::calibration::unit::Unit;
-use crate::calibration::value::{Map, Value, get, repeated_name};
+use crate::calibration::value::{Map, Sections, Value, get, repeated_name};
 use crate::calibration::{chain, flat};
 use crate::error::{Error, Result};
 
@@ -61,14 +61,14 @@ pub(super) fn document(root: &Map) -> Result<Document> {
 }
 
 /// The cameras with what each has, and the keys beside them that nothing is known of.
-fn sections(root: &Map) -> Result<(Map2, Vec<String>)> {
+fn sections(root: &Map) -> Result<(Sections, Vec<String>)> {
     let contained = contained(root);
     if contained.iter().any(|(_, map)| is_camera(map)) {
         let unknown = beside(root, |key, _| CONTAINERS.contains(&key));
         return Ok((named(contained), unknown));
     }
     let of_camera = |value: &Value| value.as_map().is_some_and(is_camera) && !value.is_matrix();
-    let own: Map2 = root
+    let own: Sections = root
         .iter()
         .filter(|(_, value)| of_camera(value))
         .filter_map(|(key, value)| Some((key.clone(), value.as_map()?.clone())))
@@ -87,11 +87,8 @@ fn sections(root: &Map) -> Result<(Map2, Vec<String>)> {
     )))
 }
 
-/// Cameras by name.
-pub(super) type Map2 = Vec<(String, Map)>;
-
 /// Cameras by the names that they give themselves.
-fn named(sections: Map2) -> Map2 {
+fn named(sections: Sections) -> Sections {
     let own = |(key, map): (String, Map)| (Fields::of(&key, &map).own_name().unwrap_or(key), map);
     sections.into_iter().map(own).collect()
 }
@@ -122,8 +119,8 @@ pub(super) fn lists_by_name(root: Map) -> Result<Map> {
 }
 
 /// What stands under the usual keys, put together by name.
-fn contained(root: &Map) -> Map2 {
-    let mut found = Map2::new();
+fn contained(root: &Map) -> Sections {
+    let mut found = Sections::new();
     let mut add = |name: &str, map: &Map| match found.iter_mut().find(|(known, _)| known == name) {
         Some((_, known)) => known.extend(map.iter().cloned()),
         None => found.push((name.to_owned(), map.clone())),

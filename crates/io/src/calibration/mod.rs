@@ -23,6 +23,7 @@ mod colmap;
 mod distance;
 mod document;
 mod fields;
+mod files;
 mod flat;
 mod layout;
 mod lens_model;
@@ -37,7 +38,7 @@ mod write;
 mod xml;
 mod yaml;
 
-use phalanx_camera::{Camera, Rig, Volume};
+use phalanx_camera::{Camera, Volume};
 
 pub use distance::{Distance, camera_distances};
 pub use source::Source;
@@ -45,7 +46,7 @@ pub use unit::Unit;
 pub use write::{to_anipose_toml, to_opencv_yaml};
 
 use crate::calibration::document::Document;
-use crate::calibration::record::Record;
+use crate::calibration::record::{MOST_CAMERAS, Record};
 use crate::error::{Error, Result};
 
 /// Calibrated cameras, in millimetres and phalanx's conventions.
@@ -69,9 +70,6 @@ pub struct Missing {
     /// Width and height of the pictures, px, for cameras of which the file does not say them.
     pub size: Option<(u32, u32)>,
 }
-
-/// The most cameras that are read.
-const MOST_CAMERAS: usize = 256;
 
 impl Calibration {
     /// Reads a calibration from one file, or from several that complete each other: intrinsics and
@@ -102,7 +100,7 @@ impl Calibration {
     /// # Ok::<(), phalanx_io::Error>(())
     /// ```
     pub fn read(files: &[Source<'_>], missing: &Missing) -> Result<Self> {
-        let Document { records, volume, unit, hint, mut notes } = Document::read(files)?;
+        let Document { records, volume, unit, hint, mut notes } = files::read(files)?;
         if records.is_empty() {
             return Err(Error::calibration("it holds no camera"));
         }
@@ -119,18 +117,6 @@ impl Calibration {
         distance::check(&cameras)?;
         notes.extend(order_note(&cameras));
         Ok(Self { cameras, volume, unit, notes })
-    }
-
-    /// A calibration that a rig holds.
-    fn of_rig(rig: Rig) -> Document {
-        let Rig { cameras, volume } = rig;
-        Document {
-            records: cameras.into_iter().map(Record::of_camera).collect(),
-            volume: Some(volume),
-            unit: Some(Unit::MILLIMETRE),
-            hint: None,
-            notes: Vec::new(),
-        }
     }
 }
 

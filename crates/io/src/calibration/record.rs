@@ -8,6 +8,9 @@ use crate::calibration::rotation;
 use crate::calibration::unit::Unit;
 use crate::error::{Error, Result};
 
+/// The most cameras that are read.
+pub(super) const MOST_CAMERAS: usize = 256;
+
 /// A camera as a file has it: lengths in the file's unit, pixels counted from the centre of the first.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Record {

@@ -9,6 +9,9 @@ use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 /// Named values, in the file's order.
 pub(super) type Map = Vec<(String, Value)>;
 
+/// Cameras by name, each with its named values.
+pub(super) type Sections = Vec<(String, Map)>;
+
 /// A value of a calibration.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Value {

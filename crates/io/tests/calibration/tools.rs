@@ -190,6 +190,49 @@ fn opencv_stereo_files_and_their_rectification() {
     assert_chained(&halves, Unit::of_mm(25.0).unwrap());
 }
 
+/// Both cameras as OpenCV's storage has them in XML or JSON, each with its own pose.
+#[test]
+fn opencv_storage_in_xml_and_json() {
+    let xml_matrix = |key: &str, rows: usize, numbers: &[f64]| {
+        let data: Vec<String> = numbers.iter().map(f64::to_string).collect();
+        format!(
+            "<{key} type_id=\"opencv-matrix\">\n  <rows>{rows}</rows>\n  <cols>{}</cols>\n  \
+             <dt>d</dt>\n  <data>\n    {}</data></{key}>\n",
+            numbers.len() / rows,
+            data.join(" "),
+        )
+    };
+    let json_matrix = |key: &str, rows: usize, numbers: &[f64]| {
+        format!(
+            "\"{key}\": {{\"type_id\": \"opencv-matrix\", \"rows\": {rows}, \"cols\": {}, \"dt\": \
+             \"d\", \"data\": {}}},\n",
+            numbers.len() / rows,
+            list(numbers),
+        )
+    };
+    let (mut xml, mut json) = (String::new(), String::new());
+    for (index, _, n) in numbered(1.0, brown()) {
+        for (field, rows, numbers) in [
+            ("M", 3, &n.matrix[..]),
+            ("D", 1, &BROWN),
+            ("R", 3, &n.rotation),
+            ("T", 3, &n.translation),
+        ] {
+            let key = format!("{field}{}", index + 1);
+            xml += &xml_matrix(&key, rows, numbers);
+            json += &json_matrix(&key, rows, numbers);
+        }
+    }
+    let size = "<image_width>1280</image_width><image_height>720</image_height>";
+    let xml =
+        format!("<?xml version=\"1.0\"?>\n<opencv_storage>\n{size}\n{xml}</opencv_storage>\n");
+    let json = format!("{{{json}\"image_width\": 1280, \"image_height\": 720}}");
+    for file in [("stereo.xml", xml), ("stereo.json", json)] {
+        let notes = assert_read(&[file], Some(Unit::MILLIMETRE), brown(), ["cam1", "cam2"]);
+        assert!(notes.is_empty(), "{notes:?}");
+    }
+}
+
 #[test]
 fn kalibr_chains() {
     let (both, turn, shift) = from_the_first(1000.0);
