@@ -1,6 +1,7 @@
 //! `cargo xtask eval-real`: real takes, by cameras used, input and method.
 //!
-//! Cameras come from a take's calibration alone; references score, and nothing else.
+//! Layout, methods and measures are described in `docs/results/real.md`. Cameras come from a take's
+//! calibration alone; references score, and nothing else.
 
 pub mod angles;
 pub mod constant;
