@@ -8,6 +8,7 @@ mod output;
 mod progress;
 mod recording;
 mod rig;
+mod side;
 mod track;
 mod train;
 

@@ -1,8 +1,11 @@
 //! What one camera recorded: a folder of pictures or a video, read frame by frame.
 
+mod assign;
 mod ffmpeg;
 mod mp4;
 mod pictures;
+pub(crate) mod reader;
+pub(crate) mod source;
 pub(crate) mod timeline;
 mod timestamps;
 mod yuv;
@@ -11,8 +14,6 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use image::DynamicImage;
-
-pub(crate) use timestamps::read as read_timestamps;
 
 /// When a frame was taken.
 #[derive(Debug, Clone, PartialEq)]

@@ -10,7 +10,7 @@ use anyhow::{Context, Result, bail, ensure};
 ///
 /// # Errors
 /// A file that cannot be read, absent columns, a time that is no number.
-pub(crate) fn read(path: &Path) -> Result<BTreeMap<String, Vec<f64>>> {
+pub(super) fn read(path: &Path) -> Result<BTreeMap<String, Vec<f64>>> {
     let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
     parse(&text).with_context(|| path.display().to_string())
 }

@@ -1,28 +1,28 @@
 //! `phalanx track`.
 
-mod cameras;
-mod reader;
 mod take;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, bail, ensure};
-use clap::{Args, ValueEnum};
+use anyhow::{Result, bail, ensure};
+use clap::Args;
 use phalanx::{
     FrameFit, Progress, Proportions, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take,
 };
-use phalanx_camera::{Camera, Rig};
+use phalanx_camera::Camera;
 use phalanx_cli::files::Output;
 use phalanx_hand::{HandShape, Side};
 use phalanx_io::take::{Take, write_csv, write_json_lines, write_npz};
 use rayon::prelude::*;
 
-use self::reader::{Pictures, Reader, Seen};
+use crate::input;
 use crate::progress::Bar;
+use crate::recording::reader::Reader;
+use crate::recording::source::{RecordingArguments, Source};
 use crate::recording::timeline::Timeline;
 use crate::rig::check;
-use crate::{input, recording};
+use crate::side::SideName;
 
 /// Recordings of up to so many moments are fitted as a whole. Of longer ones as many moments, evenly spread,
 /// tell the hand, and then every frame is fitted with it, so that memory does not grow with the recording.
@@ -36,25 +36,17 @@ const USUAL_RATE: f64 = 30.0;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// One recording per camera, in the order of the rig or as CAMERA=PATH: a folder of pictures, one a
-    /// frame, or a video. One folder that holds them all, named like the cameras, will do.
-    #[arg(required = true, value_name = "RECORDING")]
-    recordings: Vec<String>,
+    #[command(flatten)]
+    recording: RecordingArguments,
     /// The cameras, as `phalanx rig import` writes them.
     #[arg(long, value_name = "FILE.toml")]
     rig: PathBuf,
-    /// The pictures are masks: brighter than 127 is hand.
-    #[arg(long)]
-    mask: bool,
     /// The person's hand, as `calibrate-hand` or `--save-hand` writes it; fitted on the way by default.
     #[arg(long, value_name = "FILE.toml")]
     hand: Option<PathBuf>,
     /// Which hand it is.
     #[arg(long, value_enum, default_value_t)]
     side: SideName,
-    /// When the frames were taken: CSV with the columns cam_id and frame_time, s.
-    #[arg(long, value_name = "FILE.csv")]
-    timestamps: Option<PathBuf>,
     /// The frame rate of pictures that have no times; 30 Hz by default.
     #[arg(long, value_name = "HZ")]
     rate: Option<f64>,
@@ -66,34 +58,22 @@ pub(crate) struct Arguments {
     save_hand: Option<PathBuf>,
 }
 
-/// The sides by name.
-#[derive(Clone, Copy, Default, ValueEnum)]
-enum SideName {
-    /// A right hand.
-    #[default]
-    Right,
-    /// A left hand.
-    Left,
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let kind = kind(&arguments.out)?;
     let rig = check::read(&arguments.rig)?;
-    let (cameras, paths) = cameras_and_paths(&rig, &arguments.recordings)?;
-    let given = [Some(&arguments.rig), arguments.hand.as_ref(), arguments.timestamps.as_ref()];
-    let inputs: Vec<&PathBuf> = paths.iter().chain(given.into_iter().flatten()).collect();
+    let source = Source::new(&rig, &arguments.recording)?;
+    let given = [Some(&arguments.rig), arguments.hand.as_ref()];
+    let inputs: Vec<&PathBuf> = source.inputs().chain(given.into_iter().flatten()).collect();
     let out = Output::new(&arguments.out, &inputs)?;
     let hand_out = arguments.save_hand.as_ref().map(|path| Output::new(path, &inputs));
     let hand_out = hand_out.transpose()?;
-    let times = times(arguments, &cameras)?;
-    let pictures = if arguments.mask { Pictures::Masks } else { Pictures::Photographs };
-    let open = || Reader::open(&cameras, &paths, &times, pictures);
-    let reader = open()?;
-    tell(&cameras, &reader.timeline);
+    let reader = source.reader()?;
+    tell(&source.cameras, &reader.timeline);
     let settings = settings(arguments)?;
     let mut failures = Vec::new();
-    let (fit, frames) = fit(&cameras, reader, open, &settings, &mut failures)?;
-    let take = written(&cameras, &open()?.timeline, &fit, &frames, arguments.rate);
+    let timeline = reader.timeline.clone();
+    let (fit, frames) = fit(&source, reader, &settings, &mut failures)?;
+    let take = written(&source.cameras, &timeline, &fit, &frames, arguments.rate);
     out.write(&encoded(&take, &kind)?)?;
     if let Some(out) = hand_out {
         out.write(fit.hand.to_toml().as_bytes())?;
@@ -102,35 +82,27 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
 }
 
 /// Fits all moments of a recording: the take's hand and volume, and each frame.
-fn fit<'a>(
-    cameras: &[Camera],
-    mut reader: Reader<'a>,
-    open: impl Fn() -> Result<Reader<'a>>,
+fn fit(
+    source: &Source,
+    mut reader: Reader<'_>,
     settings: &TakeSettings,
     failures: &mut Vec<String>,
 ) -> Result<(TakeFit, Vec<Option<FrameFit>>)> {
-    let count = reader.moments().len();
-    let some = count.min(WHOLE);
+    let (cameras, count) = (&source.cameras, reader.moments().len());
     let bar = Bar::new();
-    let mut chosen = Vec::with_capacity(some);
-    for k in 0..some {
-        // The middle of each of so many equal parts.
-        let moment = (2 * k + 1) * count / (2 * some);
-        chosen.push(seen(&mut reader, moment, failures));
-    }
-    let fit = fit_take(cameras, &chosen, settings, &bar)?;
-    if some == count {
+    let fit = fit_take(cameras, &reader.read_some(WHOLE, failures), settings, &bar)?;
+    if count <= WHOLE {
         let frames = fit.frames.iter().cloned().map(Some).collect();
         return Ok((fit, frames));
     }
     failures.clear();
     let mut frames = Vec::with_capacity(count);
-    let mut reader = open()?;
+    let mut reader = source.reader()?;
     bar.begin("fit frames", count);
     for first in (0..count).step_by(BLOCK) {
-        let block: Vec<TakeFrame> = (first..count.min(first + BLOCK))
-            .map(|moment| seen(&mut reader, moment, failures))
-            .collect();
+        let block = first..count.min(first + BLOCK);
+        let block: Vec<TakeFrame> =
+            block.map(|moment| reader.read_noting(moment, failures)).collect();
         let fitted = block.par_iter().map(|frame| {
             let fitted = fit_frame(cameras, frame, &fit);
             bar.step();
@@ -143,14 +115,6 @@ fn fit<'a>(
         frames.extend(fitted.collect::<phalanx::Result<Vec<_>>>()?);
     }
     Ok((fit, frames))
-}
-
-/// Reads a moment; what cannot be read is noted and missing.
-fn seen(reader: &mut Reader<'_>, moment: usize, failures: &mut Vec<String>) -> TakeFrame {
-    let Seen { frame, failures: new } = reader.read(moment);
-    let name = &reader.moments()[moment].name;
-    failures.extend(new.into_iter().map(|failure| format!("frame {name}, camera {failure}")));
-    frame
 }
 
 fn kind(out: &Path) -> Result<String> {
@@ -167,34 +131,8 @@ fn kind(out: &Path) -> Result<String> {
     }
 }
 
-/// The cameras that have a recording, and where it is.
-fn cameras_and_paths(rig: &Rig, recordings: &[String]) -> Result<(Vec<Camera>, Vec<PathBuf>)> {
-    let assigned = cameras::assign(&rig.cameras, recordings)?;
-    for (camera, _) in rig.cameras.iter().zip(&assigned).filter(|(_, path)| path.is_none()) {
-        eprintln!("phalanx: camera '{}' has no recording and is left out", camera.name);
-    }
-    let both = rig.cameras.iter().zip(assigned);
-    Ok(both.filter_map(|(camera, path)| Some((camera.clone(), path?))).unzip())
-}
-
-fn times(arguments: &Arguments, cameras: &[Camera]) -> Result<Vec<Option<Vec<f64>>>> {
-    let Some(path) = &arguments.timestamps else { return Ok(vec![None; cameras.len()]) };
-    let mut all = recording::read_timestamps(path)?;
-    let of = |camera: &Camera| {
-        let times = all.remove(&camera.name);
-        let times = times.with_context(|| {
-            format!("{}: there are no times of camera '{}'", path.display(), camera.name)
-        })?;
-        Ok(Some(times))
-    };
-    cameras.iter().map(of).collect()
-}
-
 fn settings(arguments: &Arguments) -> Result<TakeSettings> {
-    let side = match arguments.side {
-        SideName::Right => Side::Right,
-        SideName::Left => Side::Left,
-    };
+    let side = Side::from(arguments.side);
     Ok(match &arguments.hand {
         Some(path) => {
             let hand = input::hand(path)?;

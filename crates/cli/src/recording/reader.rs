@@ -8,12 +8,12 @@ use phalanx::TakeFrame;
 use phalanx_camera::Camera;
 use phalanx_segmentation::SkinModel;
 
-use crate::recording::timeline::{Moment, Timeline};
-use crate::recording::{self, Recording, Stamp};
+use super::timeline::{Moment, Timeline};
+use super::{Recording, Stamp};
 
 /// How the hand is told from the rest of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Pictures {
+pub(crate) enum Pictures {
     /// By the colour of skin.
     Photographs,
     /// They are masks: brighter than 127 is hand.
@@ -21,17 +21,17 @@ pub(super) enum Pictures {
 }
 
 /// Reads what all cameras recorded.
-pub(super) struct Reader<'a> {
+pub(crate) struct Reader<'a> {
     cameras: &'a [Camera],
     recordings: Vec<Box<dyn Recording>>,
     pictures: Pictures,
-    pub(super) timeline: Timeline,
+    pub(crate) timeline: Timeline,
 }
 
 /// What the cameras saw at a moment, and what could not be read of it.
-pub(super) struct Seen {
-    pub(super) frame: TakeFrame,
-    pub(super) failures: Vec<String>,
+struct Seen {
+    frame: TakeFrame,
+    failures: Vec<String>,
 }
 
 impl<'a> Reader<'a> {
@@ -39,14 +39,14 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// A recording that cannot be opened, another number of times than frames, nothing to match frames by.
-    pub(super) fn open(
+    pub(crate) fn open(
         cameras: &'a [Camera],
         paths: &[PathBuf],
         times: &[Option<Vec<f64>>],
         pictures: Pictures,
     ) -> Result<Self> {
         let recordings: Vec<Box<dyn Recording>> =
-            paths.iter().map(|path| recording::open(path)).collect::<Result<_>>()?;
+            paths.iter().map(|path| super::open(path)).collect::<Result<_>>()?;
         let mut stamps: Vec<Vec<Stamp>> = Vec::new();
         for ((recording, camera), times) in recordings.iter().zip(cameras).zip(times) {
             stamps.push(with_times(recording.stamps(), camera, times.as_deref())?);
@@ -64,12 +64,29 @@ impl<'a> Reader<'a> {
     }
 
     /// The moments.
-    pub(super) fn moments(&self) -> &[Moment] {
+    pub(crate) fn moments(&self) -> &[Moment] {
         &self.timeline.moments
     }
 
+    /// Reads some moments, evenly spread; what cannot be read is noted and missing.
+    pub(crate) fn read_some(&mut self, most: usize, failures: &mut Vec<String>) -> Vec<TakeFrame> {
+        let count = self.moments().len();
+        let some = most.min(count);
+        // The middle of each of so many equal parts.
+        let middle = |k: usize| (2 * k + 1) * count / (2 * some);
+        (0..some).map(|k| self.read_noting(middle(k), failures)).collect()
+    }
+
+    /// Reads a moment that comes after the last one read; what cannot be read is noted and missing.
+    pub(crate) fn read_noting(&mut self, moment: usize, failures: &mut Vec<String>) -> TakeFrame {
+        let Seen { frame, failures: new } = self.read(moment);
+        let name = &self.moments()[moment].name;
+        failures.extend(new.into_iter().map(|failure| format!("frame {name}, camera {failure}")));
+        frame
+    }
+
     /// Reads a moment that comes after the last one read.
-    pub(super) fn read(&mut self, moment: usize) -> Seen {
+    fn read(&mut self, moment: usize) -> Seen {
         let mut failures = Vec::new();
         let mut masks = Vec::new();
         for (view, recording) in self.recordings.iter_mut().enumerate() {

@@ -1,0 +1,56 @@
+//! `phalanx rig volume`.
+
+use std::path::PathBuf;
+
+use anyhow::{Result, ensure};
+use clap::Args;
+use phalanx::{VolumeEstimate, estimate_volume};
+use phalanx_camera::Rig;
+use phalanx_cli::files::Output;
+use phalanx_hand::HandShape;
+
+use super::check;
+use crate::recording::source::{RecordingArguments, Source};
+use crate::side::SideName;
+
+/// Moments that tell where a hand works.
+const MOMENTS: usize = 24;
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The rig, as `phalanx rig import` writes it.
+    #[arg(value_name = "RIG.toml")]
+    rig: PathBuf,
+    #[command(flatten)]
+    recording: RecordingArguments,
+    /// Which hand it is.
+    #[arg(long, value_enum, default_value_t)]
+    side: SideName,
+    /// Where the rig goes with its volume.
+    #[arg(long, value_name = "FILE.toml")]
+    out: PathBuf,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let rig = check::read(&arguments.rig)?;
+    let source = Source::new(&rig, &arguments.recording)?;
+    let inputs: Vec<&PathBuf> = source.inputs().chain([&arguments.rig]).collect();
+    let out = Output::new(&arguments.out, &inputs)?;
+    let mut failures = Vec::new();
+    let frames = source.reader()?.read_some(MOMENTS, &mut failures);
+    for failure in &failures {
+        eprintln!("phalanx: {failure}");
+    }
+    ensure!(failures.len() < frames.len(), "too few pictures can be read");
+    let hand = HandShape { side: arguments.side.into(), ..HandShape::adult() };
+    let VolumeEstimate { volume, turns } = estimate_volume(&source.cameras, &frames, &hand)?;
+    let rig = Rig { volume, ..rig };
+    out.write(rig.to_toml()?.as_bytes())?;
+    let [x, y, z] = turns.map(|turn| turn.map(f64::to_degrees));
+    let center = rig.volume.center;
+    out.say(&format!(
+        "the wrist works around {:.0}, {:.0}, {:.0} mm; the hand turns by {:.0} to {:.0}° about X, {:.0} to \
+         {:.0}° about Y and {:.0} to {:.0}° about the forearm",
+        center.x, center.y, center.z, x[0], x[1], y[0], y[1], z[0], z[1]
+    ))
+}
