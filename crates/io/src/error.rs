@@ -138,16 +138,25 @@ pub enum Error {
 
 impl Error {
     /// A calibration that cannot be read.
-    pub(crate) fn calibration(what: impl Into<String>) -> Self {
-        Self::Calibration { what: what.into() }
+    pub(crate) fn calibration(what: impl AsRef<str>) -> Self {
+        Self::Calibration { what: shortened(what.as_ref()) }
     }
 
     /// A field that cannot be right.
-    pub(crate) fn field(camera: &str, field: &str, what: impl Into<String>) -> Self {
+    pub(crate) fn field(camera: &str, field: &str, what: impl AsRef<str>) -> Self {
         Self::CalibrationField {
-            camera: camera.to_owned(),
-            field: field.to_owned(),
-            what: what.into(),
+            camera: shortened(camera),
+            field: shortened(field),
+            what: shortened(what.as_ref()),
         }
+    }
+}
+
+/// A text that may quote a file, cut where it is too long to be read.
+fn shortened(text: &str) -> String {
+    const MOST: usize = 400;
+    match text.char_indices().nth(MOST) {
+        None => text.to_owned(),
+        Some((end, _)) => format!("{}…", &text[..end]),
     }
 }

@@ -193,7 +193,7 @@ impl<'a> Fields<'a> {
         found.map(|(_, key, value)| (*key, *value))
     }
 
-    fn wrong(&self, field: &str, what: impl Into<String>) -> Error {
+    fn wrong(&self, field: &str, what: impl AsRef<str>) -> Error {
         Error::field(self.name, field, what)
     }
 

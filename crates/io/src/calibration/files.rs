@@ -83,8 +83,11 @@ fn parse(file: &Source<'_>) -> Result<Content> {
         Syntax::Json => serde_json::from_str(&text).map_err(|e| json_error(&text, &e))?,
         Syntax::Yaml => yaml::parse(&text)?,
         Syntax::Toml => {
-            let value: Value =
-                toml::from_str(&text).map_err(|e| Error::calibration(e.to_string()))?;
+            if text.len() > MOST_TOML_BYTES {
+                let kilobytes = text.len() >> 10;
+                return Err(Error::calibration(format!("{kilobytes} KiB; of TOML, 256 are read")));
+            }
+            let value: Value = toml::from_str(&text).map_err(|e| toml_error(&text, &e))?;
             if value.as_map().is_some_and(is_rig) {
                 return Ok(Content::Rig(Box::new(Rig::from_toml(&text)?)));
             }
@@ -98,6 +101,16 @@ fn parse(file: &Source<'_>) -> Result<Content> {
         }
         _ => Err(Error::calibration("it holds nothing by name")),
     }
+}
+
+/// TOML is parsed as a whole first, which takes a hundred times its size.
+const MOST_TOML_BYTES: usize = 256 << 10;
+
+/// The parser's words and the line, without the line's text, which may be long.
+fn toml_error(text: &str, error: &toml::de::Error) -> Error {
+    let before = error.span().and_then(|span| text.get(..span.start)).unwrap_or_default();
+    let line = 1 + before.matches('\n').count();
+    Error::calibration(format!("line {line}: {}", error.message()))
 }
 
 fn is_rig(map: &Map) -> bool {
