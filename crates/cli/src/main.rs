@@ -1,16 +1,21 @@
 //! The `phalanx` program.
 
 mod calibrate_hand;
+mod convert;
 mod estimate;
+mod evaluate;
 mod import_calibration;
 mod input;
 mod output;
 mod progress;
 mod recording;
+mod report;
 mod rig;
 mod side;
+mod take_file;
 mod track;
 mod train;
+mod view;
 
 use std::process::ExitCode;
 
@@ -43,6 +48,14 @@ enum Command {
     Rig(rig::Command),
     /// Make a rig file of a calibration (the older name of `rig import`).
     ImportCalibration(import_calibration::Arguments),
+    /// Write a take as a file of another tool.
+    Convert(convert::Arguments),
+    /// Write a page on which to look at a take.
+    View(view::Arguments),
+    /// Print the range of motion of a take, or of two side by side.
+    Report(report::Arguments),
+    /// Compare a take with a reference: errors, whether deviations keep their promise, lag.
+    Evaluate(evaluate::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -62,6 +75,10 @@ fn run(command: &Command) -> anyhow::Result<ExitCode> {
         Command::CalibrateHand(arguments) => calibrate_hand::run(arguments)?,
         Command::Rig(command) => rig::run(command)?,
         Command::ImportCalibration(arguments) => import_calibration::run(arguments)?,
+        Command::Convert(arguments) => convert::run(arguments)?,
+        Command::View(arguments) => view::run(arguments)?,
+        Command::Report(arguments) => report::run(arguments)?,
+        Command::Evaluate(arguments) => evaluate::run(arguments)?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -134,6 +134,18 @@ pub enum Error {
         /// The name that was met.
         name: String,
     },
+    /// A reference to compare a take with that is none.
+    #[error("reference: {what}")]
+    Reference {
+        /// What is wrong.
+        what: String,
+    },
+    /// A picture that does not belong to a take.
+    #[error("picture: {what}")]
+    Picture {
+        /// What is wrong.
+        what: String,
+    },
 }
 
 impl Error {

@@ -7,5 +7,6 @@ mod outputs;
 mod refinements;
 mod refusals;
 mod rigs;
+mod takes;
 mod tracks;
 mod trainings;

@@ -20,10 +20,11 @@ pub fn bvh(take: &Take, placement: Placement) -> Result<String> {
     let poses = filled_poses(take, "BVH")?;
     let skeleton = Skeleton::new(&take.header.hand);
     let scale = placement.unit.per_mm();
-    let mut text = "HIERARCHY\n".to_owned();
-    push_bone(&mut text, &skeleton, 0, 0, scale);
+    let mut lines = vec!["HIERARCHY".to_owned()];
+    push_bone(&mut lines, &skeleton, 0, 0, scale);
     let period = 1.0 / frame_rate(take);
-    text += &format!("MOTION\nFrames: {}\nFrame Time: {period:.7}\n", poses.len());
+    lines.extend(["MOTION".to_owned(), format!("Frames: {}", poses.len())]);
+    lines.push(format!("Frame Time: {period:.7}"));
     let file_from_hand = placement.file_from_world(&take.header) * take.header.world_from_hand;
     for pose in &poses {
         let place = file_from_hand.transform_point3(pose.translation()) * scale;
@@ -34,9 +35,10 @@ pub fn bvh(take: &Take, placement: Placement) -> Result<String> {
             cells.extend([z, x, y].map(f64::to_degrees));
         }
         let cells: Vec<String> = cells.iter().map(|cell| format!("{cell:.6}")).collect();
-        text += &(cells.join(" ") + "\n");
+        lines.push(cells.join(" "));
     }
-    Ok(text)
+    lines.push(String::new());
+    Ok(lines.join("\n"))
 }
 
 fn turn_of(frame: &DAffine3) -> DQuat {
@@ -45,28 +47,26 @@ fn turn_of(frame: &DAffine3) -> DQuat {
 }
 
 /// A bone and all that it carries.
-fn push_bone(text: &mut String, skeleton: &Skeleton, bone: usize, depth: usize, scale: f64) {
+fn push_bone(lines: &mut Vec<String>, skeleton: &Skeleton, bone: usize, depth: usize, scale: f64) {
     let indent = "\t".repeat(depth);
     let (kind, channels) = match depth {
         0 => ("ROOT", "6 Xposition Yposition Zposition"),
         _ => ("JOINT", "3"),
     };
     let Bone { offset, tip, .. } = &skeleton.bones[bone];
-    text.push_str(&format!(
-        "{indent}{kind} {}\n{indent}{{\n{indent}\tOFFSET {}\n{indent}\tCHANNELS {channels} {TURNS}\n",
-        BONE_NAMES[bone],
-        cells(*offset * scale),
-    ));
+    lines.push(format!("{indent}{kind} {}", BONE_NAMES[bone]));
+    lines.push(format!("{indent}{{"));
+    lines.push(format!("{indent}\tOFFSET {}", cells(*offset * scale)));
+    lines.push(format!("{indent}\tCHANNELS {channels} {TURNS}"));
     for child in (0..BONES).filter(|&child| skeleton.bones[child].parent == Some(bone)) {
-        push_bone(text, skeleton, child, depth + 1, scale);
+        push_bone(lines, skeleton, child, depth + 1, scale);
     }
     if let Some(tip) = tip {
-        let offset = cells(*tip * scale);
-        text.push_str(&format!(
-            "{indent}\tEnd Site\n{indent}\t{{\n{indent}\t\tOFFSET {offset}\n{indent}\t}}\n"
-        ));
+        lines.extend(["End Site", "{"].map(|line| format!("{indent}\t{line}")));
+        lines.push(format!("{indent}\t\tOFFSET {}", cells(*tip * scale)));
+        lines.push(format!("{indent}\t}}"));
     }
-    text.push_str(&format!("{indent}}}\n"));
+    lines.push(format!("{indent}}}"));
 }
 
 fn cells(point: DVec3) -> String {

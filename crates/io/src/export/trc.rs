@@ -18,24 +18,26 @@ pub fn trc(take: &Take, name: &str, placement: Placement) -> Result<String> {
     let (rate, frames, joints) = (frame_rate(take), take.frames.len(), JOINT_NAMES.len());
     let name: String = name.chars().filter(|letter| !letter.is_control()).collect();
     let unit = placement.unit.symbol();
-    let mut text = format!(
-        "PathFileType\t4\t(X/Y/Z)\t{name}\n\
-         DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n\
-         {rate}\t{rate}\t{frames}\t{joints}\t{unit}\t{rate}\t1\t{frames}\n"
-    );
     let markers = JOINT_NAMES.map(|joint| format!("{joint}\t\t\t")).concat();
     let axes: Vec<String> = (1..=joints).map(|k| format!("X{k}\tY{k}\tZ{k}")).collect();
-    text += &format!("Frame#\tTime\t{markers}\n\t\t{}\n\n", axes.join("\t"));
-    for (frame, number) in take.frames.iter().zip(1_u64..) {
-        text += &format!("{number}\t{:.6}", frame.time);
-        for joint in 0..joints {
-            let estimate = frame.estimate.as_ref();
-            text += &match estimate.map(|e| placement.point(&take.header, e.joints[joint])) {
-                Some(point) => format!("\t{:.6}\t{:.6}\t{:.6}", point.x, point.y, point.z),
-                None => "\tNaN\tNaN\tNaN".to_owned(),
-            };
-        }
-        text.push('\n');
-    }
-    Ok(text)
+    let mut lines = vec![
+        format!("PathFileType\t4\t(X/Y/Z)\t{name}"),
+        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames".to_owned(),
+        format!("{rate}\t{rate}\t{frames}\t{joints}\t{unit}\t{rate}\t1\t{frames}"),
+        format!("Frame#\tTime\t{markers}"),
+        format!("\t\t{}", axes.join("\t")),
+        String::new(),
+    ];
+    lines.extend(take.frames.iter().zip(1_u64..).map(|(frame, number)| {
+        let cells = (0..joints).map(|joint| match &frame.estimate {
+            Some(estimate) => {
+                let point = placement.point(&take.header, estimate.joints[joint]);
+                format!("\t{:.6}\t{:.6}\t{:.6}", point.x, point.y, point.z)
+            }
+            None => "\tNaN\tNaN\tNaN".to_owned(),
+        });
+        format!("{number}\t{:.6}{}", frame.time, cells.collect::<Vec<_>>().concat())
+    }));
+    lines.push(String::new());
+    Ok(lines.join("\n"))
 }

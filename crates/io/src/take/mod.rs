@@ -179,6 +179,7 @@ fn joint_link(joint: usize) -> Link {
     }
 }
 
-fn unwritten(error: &impl std::fmt::Display) -> Error {
+/// What a writer reports, as an error of this crate.
+pub(crate) fn unwritten(error: &impl std::fmt::Display) -> Error {
     Error::Write { what: error.to_string() }
 }

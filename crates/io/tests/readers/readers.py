@@ -163,7 +163,7 @@ def check_bvh():
                 rotation = rotation @ turn(channel[0], read.frame_joint_channel(frame, name, channel))
         return at, rotation
 
-    for frame in np.flatnonzero(found)[::7]:
+    for frame in np.flatnonzero(found)[::13]:
         for name in names[1:]:
             at, rotation = place(name, frame)
             same(10 * at, points[frame, joints.index(name)], 1e-3)

@@ -1,0 +1,105 @@
+//! `phalanx convert`.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use phalanx_io::export::{
+    Axes, CoordinateNames, LengthUnit, Placement, bvh, c3d, deviation_file, frame_rate, glb,
+    largest_jitter, motion_file, trc,
+};
+use phalanx_io::take::{Take, write_csv, write_json_lines, write_npz};
+
+use crate::{output, take_file};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The take: .csv, .jsonl or .npz.
+    #[arg(value_name = "TAKE")]
+    take: PathBuf,
+    /// Where it goes; the end of its name says as what: .csv, .jsonl, .npz, .trc, .mot (with the
+    /// deviations in NAME_std.sto beside it), .bvh, .c3d or .glb.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// The axes of positions in .trc, .bvh, .c3d and .glb: `world` as calibrated, `hand` of the hand
+    /// at rest (X to the thumb's side, Y out of the back, Z along the fingers), or for each of the
+    /// file's axes the world's axis that it is: `xz-y` has Y up of a world with Z up.
+    #[arg(long, default_value = "world", allow_hyphen_values = true)]
+    axes: Axes,
+    /// The unit of positions: mm, cm or m. Else mm; cm for .bvh; m for .glb.
+    #[arg(long)]
+    unit: Option<LengthUnit>,
+    /// Whose names the columns of .mot have: phalanx, opensim (ARMS hand) or myohand.
+    #[arg(long, default_value = "phalanx")]
+    names: CoordinateNames,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let take = take_file::read(&arguments.take)?;
+    let out = &arguments.out;
+    let kind = take_file::extension(out);
+    let write = || -> Result<()> {
+        let bytes = converted(&take, arguments, &kind)?;
+        output::write_whole(out, &bytes)
+    };
+    write().with_context(|| out.display().to_string())?;
+    if kind == "mot" {
+        let unit = arguments.unit.unwrap_or(LengthUnit::Millimetre);
+        let path = deviations_beside(out);
+        let deviations = deviation_file(&take, arguments.names, unit)?;
+        output::write_whole(&path, deviations.as_bytes())?;
+    }
+    warn(&take, arguments, &kind);
+    Ok(())
+}
+
+fn converted(take: &Take, arguments: &Arguments, kind: &str) -> Result<Vec<u8>> {
+    let unit = match kind {
+        "bvh" => LengthUnit::Centimetre,
+        "glb" => LengthUnit::Metre,
+        _ => LengthUnit::Millimetre,
+    };
+    let placement = Placement { axes: arguments.axes, unit: arguments.unit.unwrap_or(unit) };
+    let mut bytes = Vec::new();
+    match kind {
+        "csv" => write_csv(take, &mut bytes)?,
+        "jsonl" => write_json_lines(take, &mut bytes)?,
+        "npz" => bytes = write_npz(take)?,
+        "trc" => {
+            let name = arguments.out.file_name().unwrap_or_default().to_string_lossy();
+            bytes = trc(take, &name, placement)?.into_bytes();
+        }
+        "mot" => bytes = motion_file(take, arguments.names, placement.unit)?.into_bytes(),
+        "bvh" => bytes = bvh(take, placement)?.into_bytes(),
+        "c3d" => bytes = c3d(take, placement)?,
+        "glb" => bytes = glb(take, placement)?,
+        _ => bail!("the name must end with .csv, .jsonl, .npz, .trc, .mot, .bvh, .c3d or .glb"),
+    }
+    Ok(bytes)
+}
+
+fn deviations_beside(motion: &Path) -> PathBuf {
+    motion.with_file_name(format!("{}_std.sto", take_file::name(motion)))
+}
+
+/// What the file does not tell.
+fn warn(take: &Take, arguments: &Arguments, kind: &str) {
+    let lost = take.frames.iter().filter(|frame| frame.estimate.is_none()).count();
+    if lost > 0 && kind == "bvh" {
+        eprintln!("phalanx: {lost} frames without a hand repeat the pose before");
+    }
+    let jitter = largest_jitter(take);
+    if matches!(kind, "bvh" | "c3d") && jitter > 0.5 / frame_rate(take) {
+        eprintln!(
+            "phalanx: the frames are up to {:.0} ms off an even beat, which is all that .{kind} knows",
+            1000.0 * jitter
+        );
+    }
+    let unconfirmed =
+        arguments.names.coordinates().iter().filter(|coordinate| !coordinate.is_confirmed).count();
+    if kind == "mot" && unconfirmed > 0 {
+        eprintln!(
+            "phalanx: the signs of {unconfirmed} columns are not yet confirmed on a model; compare before use"
+        );
+    }
+}

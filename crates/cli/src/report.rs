@@ -1,0 +1,51 @@
+//! `phalanx report`.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use phalanx_io::report::{
+    FrameChoice, NamedRange, RangeOfMotion, print_page, range_table, to_csv, to_text,
+};
+
+use crate::{output, take_file};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The take: .csv, .jsonl or .npz.
+    #[arg(value_name = "TAKE")]
+    take: PathBuf,
+    /// A second one, to stand beside it with the differences (the second less the first).
+    #[arg(value_name = "TAKE2")]
+    second: Option<PathBuf>,
+    /// Count doubted frames, too.
+    #[arg(long)]
+    all_frames: bool,
+    /// Where the table goes, as .csv or as .html to print; else it is printed as text.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let first = range(&arguments.take, arguments)?;
+    let second = arguments.second.as_deref().map(|path| range(path, arguments)).transpose()?;
+    let table = range_table(
+        NamedRange { name: &first.0, range: &first.1 },
+        second.as_ref().map(|(name, range)| NamedRange { name, range }),
+    );
+    let Some(out) = &arguments.out else { return output::print(&to_text(&table)) };
+    match take_file::extension(out).as_str() {
+        "csv" => output::write_whole(out, &to_csv(&table)?),
+        "html" => output::write_whole(out, print_page(&table).as_bytes()),
+        _ => bail!("{}: the name must end with .csv or .html", out.display()),
+    }
+}
+
+fn range(path: &Path, arguments: &Arguments) -> Result<(String, RangeOfMotion)> {
+    let take = take_file::read(path)?;
+    let choice = if arguments.all_frames { FrameChoice::All } else { FrameChoice::Trusted };
+    let range = RangeOfMotion::of(&take, choice).with_context(|| {
+        format!("{}: no frame can be trusted (--all-frames counts doubted ones)", path.display())
+    })?;
+    Ok((take_file::name(path), range))
+}

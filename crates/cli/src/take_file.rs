@@ -1,0 +1,31 @@
+//! Reading takes, and other files whose kind their name tells.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use phalanx_io::take::{Take, read_csv, read_json_lines, read_npz};
+
+/// What a file's name ends with, in small letters.
+pub(crate) fn extension(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
+
+/// Reads a take: CSV, JSON Lines or NPZ by its name.
+pub(crate) fn read(path: &Path) -> Result<Take> {
+    let read = || -> Result<Take> {
+        match extension(path).as_str() {
+            "csv" => Ok(read_csv(BufReader::new(File::open(path)?))?),
+            "jsonl" => Ok(read_json_lines(BufReader::new(File::open(path)?))?),
+            "npz" => Ok(read_npz(&std::fs::read(path)?)?),
+            _ => bail!("a take's name ends with .csv, .jsonl or .npz"),
+        }
+    };
+    read().with_context(|| path.display().to_string())
+}
+
+/// A file's name without its folder and end.
+pub(crate) fn name(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}

@@ -1,0 +1,121 @@
+//! `convert`, `view`, `report` and `evaluate` on takes.
+
+use std::process::{Command, Output};
+
+use glam::DAffine3;
+use phalanx_hand::{Dof, HandShape};
+use phalanx_io::take::{FrameView, Take, TakeFrame, TakeHeader, read_npz, write_csv};
+use tempfile::TempDir;
+
+use crate::desk::closing;
+
+/// A folder with `take.csv`: a hand that closes and opens, in 30 frames; the last is doubted.
+struct Folder(TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        let header = TakeHeader {
+            hand: HandShape::adult(),
+            world_from_hand: DAffine3::IDENTITY,
+            views: vec!["top".to_owned()],
+            rate_hz: Some(30.0),
+            model: None,
+        };
+        let closed = |k: u64| 0.5 - 0.5 * (k as f64 / 29.0 * std::f64::consts::TAU).cos();
+        let frame = |k: u64| TakeFrame {
+            index: k,
+            time: k as f64 / 30.0,
+            estimate: Some(header.estimate(closing(closed(k)), [Some(0.02); Dof::COUNT])),
+            views: vec![FrameView { used: true, overlap: Some(0.9) }],
+            doubts: if k == 29 { vec!["low-overlap".to_owned()] } else { vec![] },
+        };
+        let take = Take { frames: (0..30).map(frame).collect(), header };
+        let folder = Self(TempDir::new().unwrap());
+        write_csv(&take, std::fs::File::create(folder.0.path().join("take.csv")).unwrap()).unwrap();
+        folder
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        let program = env!("CARGO_BIN_EXE_phalanx");
+        Command::new(program).args(arguments).current_dir(self.0.path()).output().unwrap()
+    }
+
+    fn printed(&self, arguments: &[&str]) -> String {
+        let output = self.run(arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success() && said.is_empty(), "{arguments:?}: {said}");
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    fn refusal(&self, arguments: &[&str]) -> String {
+        let output = self.run(arguments);
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8(output.stderr).unwrap()
+    }
+
+    fn file(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.0.path().join(name)).unwrap()
+    }
+}
+
+#[test]
+fn a_take_is_written_as_every_format_and_read_again() {
+    let folder = Folder::new();
+    for name in ["a.jsonl", "a.npz", "a.trc", "a.mot", "a.bvh", "a.c3d", "a.glb", "a.csv"] {
+        folder.printed(&["convert", "take.csv", "--out", name]);
+        assert!(folder.file(name).len() > 1000, "{name}");
+    }
+    assert_eq!(folder.file("a.csv"), folder.file("take.csv"));
+    assert!(folder.file("a_std.sto").starts_with(b"Standard deviations"));
+    folder.printed(&["convert", "a.jsonl", "--out", "b.npz"]);
+    assert_eq!(read_npz(&folder.file("b.npz")).unwrap().frames.len(), 30);
+    folder.printed(&["convert", "take.csv", "--out", "m.trc", "--unit", "m", "--axes", "xz-y"]);
+    assert!(String::from_utf8(folder.file("m.trc")).unwrap().contains("\tm\t"));
+    let guessed = folder.run(&["convert", "take.csv", "--out", "o.mot", "--names", "opensim"]);
+    assert!(String::from_utf8(guessed.stderr).unwrap().contains("not yet confirmed"));
+}
+
+#[test]
+fn a_page_and_a_report_are_written() {
+    let folder = Folder::new();
+    folder.printed(&["view", "take.csv", "--out", "take.html"]);
+    assert!(folder.file("take.html").starts_with(b"<!doctype html>"));
+    let text = folder.printed(&["report", "take.csv"]);
+    assert!(text.contains("take: 29 of 30 frames count") && text.contains("index total"));
+    assert!(folder.printed(&["report", "take.csv", "--all-frames"]).contains("30 of 30"));
+    let both = folder.printed(&["report", "take.csv", "take.csv"]);
+    assert!(both.lines().any(|line| line.starts_with("index.pip") && line.ends_with("0.0 ± 2.3")));
+    folder.printed(&["report", "take.csv", "--out", "range.csv"]);
+    folder.printed(&["report", "take.csv", "--out", "range.html"]);
+    assert!(folder.file("range.html").starts_with(b"<!doctype html>"));
+}
+
+#[test]
+fn a_take_agrees_with_itself() {
+    let folder = Folder::new();
+    folder.printed(&["convert", "take.csv", "--out", "reference.trc"]);
+    for reference in ["take.csv", "reference.trc"] {
+        let text = folder.printed(&["evaluate", "take.csv", "--reference", reference]);
+        assert!(text.contains("30 frames compared, 0 without"), "{text}");
+        assert!(text.contains("0.0 ms late"), "{text}");
+        let arguments = ["evaluate", "take.csv", "--reference", reference, "--json"];
+        let json: serde_json::Value = serde_json::from_str(&folder.printed(&arguments)).unwrap();
+        assert!(json["compared"].as_array().unwrap().len() >= 21);
+    }
+}
+
+#[test]
+fn wrong_use_is_refused_with_what_to_do() {
+    let folder = Folder::new();
+    let says = |arguments: &[&str], what: &str| {
+        let said = folder.refusal(arguments);
+        assert!(said.contains(what), "{arguments:?}: {said}");
+    };
+    says(&["convert", "take.csv", "--out", "take.xls"], "must end with");
+    says(&["convert", "take.txt", "--out", "take.bvh"], "ends with .csv, .jsonl or .npz");
+    says(&["convert", "take.csv", "--out", "t.trc", "--axes", "yxz"], "without a mirror");
+    says(&["convert", "take.csv", "--out", "t.glb", "--unit", "mm"], "glTF has lengths in m");
+    says(&["view", "take.csv", "--out", "take.pdf"], "the page is HTML");
+    says(&["report", "take.csv", "--out", "take.pdf"], "must end with .csv or .html");
+    says(&["evaluate", "take.csv", "--reference", "x.c3d"], "ends with .csv, .trc or .mot");
+}

@@ -1,0 +1,9 @@
+//! A take beside a reference: errors, whether the deviations keep their promise, and lag.
+
+mod lag;
+mod reference;
+mod scores;
+
+pub use lag::{Lag, lag};
+pub use reference::{Clock, Reference, read_csv, read_motion_file, read_trc};
+pub use scores::{Evaluation, LEVELS, Scores, evaluate};

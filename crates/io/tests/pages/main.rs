@@ -1,0 +1,6 @@
+//! The pages: what they hold, and what a browser makes of them.
+
+mod browser;
+mod reports;
+#[path = "../formats/sample.rs"]
+mod sample;
