@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use phalanx_cli::files::Output;
 use phalanx_io::export::{
     Axes, CoordinateNames, LengthUnit, Placement, bvh, c3d, deviation_file, frame_rate, glb,
     largest_jitter, motion_file, trc,
 };
 use phalanx_io::take::{Take, write_csv, write_json_lines, write_npz};
 
-use crate::{output, take_file};
+use crate::take_file;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -35,19 +36,16 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let (out, inputs) = (&arguments.out, [&arguments.take]);
+    let output = Output::new(out, &inputs)?;
     let take = take_file::read(&arguments.take)?;
-    let out = &arguments.out;
     let kind = take_file::extension(out);
-    let write = || -> Result<()> {
-        let bytes = converted(&take, arguments, &kind)?;
-        output::write_whole(out, &bytes)
-    };
-    write().with_context(|| out.display().to_string())?;
+    let bytes = converted(&take, arguments, &kind).with_context(|| out.display().to_string())?;
+    output.write(&bytes)?;
     if kind == "mot" {
         let unit = arguments.unit.unwrap_or(LengthUnit::Millimetre);
-        let path = deviations_beside(out);
         let deviations = deviation_file(&take, arguments.names, unit)?;
-        output::write_whole(&path, deviations.as_bytes())?;
+        Output::new(&deviations_beside(out), &inputs)?.write(deviations.as_bytes())?;
     }
     warn(&take, arguments, &kind);
     Ok(())

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
+use phalanx_cli::files::print;
 use phalanx_hand::{Dof, Unit};
 use phalanx_io::evaluation::{
     Evaluation, LEVELS, Lag, Reference, Scores, evaluate, lag, read_csv, read_motion_file, read_trc,
@@ -12,7 +13,7 @@ use phalanx_io::evaluation::{
 use phalanx_io::take::JOINT_NAMES;
 use serde_json::{Value, json};
 
-use crate::{output, take_file};
+use crate::take_file;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -47,9 +48,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     );
     if arguments.json {
         let json = json(&evaluation, lag);
-        return output::print(&(serde_json::to_string_pretty(&json)? + "\n"));
+        return print(&(serde_json::to_string_pretty(&json)? + "\n"));
     }
-    output::print(&text(&evaluation, lag))
+    print(&text(&evaluation, lag))
 }
 
 fn reference(path: &Path) -> Result<Reference> {

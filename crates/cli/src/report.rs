@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use phalanx_cli::files::{Output, print};
 use phalanx_io::report::{
     FrameChoice, NamedRange, RangeOfMotion, print_page, range_table, to_csv, to_text,
 };
 
-use crate::{output, take_file};
+use crate::take_file;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -33,10 +34,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         NamedRange { name: &first.0, range: &first.1 },
         second.as_ref().map(|(name, range)| NamedRange { name, range }),
     );
-    let Some(out) = &arguments.out else { return output::print(&to_text(&table)) };
+    let Some(out) = &arguments.out else { return print(&to_text(&table)) };
+    let inputs: Vec<&PathBuf> = std::iter::once(&arguments.take).chain(&arguments.second).collect();
+    let output = Output::new(out, &inputs)?;
     match take_file::extension(out).as_str() {
-        "csv" => output::write_whole(out, &to_csv(&table)?),
-        "html" => output::write_whole(out, print_page(&table).as_bytes()),
+        "csv" => output.write(&to_csv(&table)?),
+        "html" => output.write(print_page(&table).as_bytes()),
         _ => bail!("{}: the name must end with .csv or .html", out.display()),
     }
 }

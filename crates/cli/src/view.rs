@@ -6,10 +6,11 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use image::codecs::jpeg::JpegEncoder;
 use phalanx_camera::{Camera, Rig};
+use phalanx_cli::files::Output;
 use phalanx_io::page::{ViewPicture, ViewPictures, view_page};
 use phalanx_io::take::Take;
 
-use crate::{input, output, take_file};
+use crate::{input, take_file};
 
 /// More pictures make a page that browsers open slowly; of more some are taken, evenly spaced.
 const MOST_PICTURES: usize = 600;
@@ -39,13 +40,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     if take_file::extension(&arguments.out) != "html" {
         bail!("{}: the page is HTML; name it so", arguments.out.display());
     }
+    let output = Output::new(&arguments.out, &[&arguments.take])?;
     let take = take_file::read(&arguments.take)?;
     let pictures = match (&arguments.frames, &arguments.rig) {
         (Some(frames), Some(rig)) => pictures(&take, frames, rig)?,
         _ => Vec::new(),
     };
     let page = view_page(&take, &take_file::name(&arguments.take), &pictures)?;
-    output::write_whole(&arguments.out, page.as_bytes())
+    output.write(page.as_bytes())
 }
 
 /// The pictures of the cameras that the take, the rig and the folder all have.
