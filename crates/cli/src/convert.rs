@@ -9,7 +9,7 @@ use phalanx_io::export::{
     Axes, CoordinateNames, LengthUnit, Placement, bvh, c3d, deviation_file, frame_rate, glb,
     largest_jitter, motion_file, trc,
 };
-use phalanx_io::take::{Take, write_csv, write_json_lines, write_npz};
+use phalanx_io::take::Take;
 
 use crate::take_file;
 
@@ -58,22 +58,20 @@ fn converted(take: &Take, arguments: &Arguments, kind: &str) -> Result<Vec<u8>> 
         _ => LengthUnit::Millimetre,
     };
     let placement = Placement { axes: arguments.axes, unit: arguments.unit.unwrap_or(unit) };
-    let mut bytes = Vec::new();
-    match kind {
-        "csv" => write_csv(take, &mut bytes)?,
-        "jsonl" => write_json_lines(take, &mut bytes)?,
-        "npz" => bytes = write_npz(take)?,
+    if let Some(bytes) = take_file::encoded(take, kind)? {
+        return Ok(bytes);
+    }
+    Ok(match kind {
         "trc" => {
             let name = arguments.out.file_name().unwrap_or_default().to_string_lossy();
-            bytes = trc(take, &name, placement)?.into_bytes();
+            trc(take, &name, placement)?.into_bytes()
         }
-        "mot" => bytes = motion_file(take, arguments.names, placement.unit)?.into_bytes(),
-        "bvh" => bytes = bvh(take, placement)?.into_bytes(),
-        "c3d" => bytes = c3d(take, placement)?,
-        "glb" => bytes = glb(take, placement)?,
+        "mot" => motion_file(take, arguments.names, placement.unit)?.into_bytes(),
+        "bvh" => bvh(take, placement)?.into_bytes(),
+        "c3d" => c3d(take, placement)?,
+        "glb" => glb(take, placement)?,
         _ => bail!("the name must end with .csv, .jsonl, .npz, .trc, .mot, .bvh, .c3d or .glb"),
-    }
-    Ok(bytes)
+    })
 }
 
 fn deviations_beside(motion: &Path) -> PathBuf {

@@ -2,6 +2,7 @@
 
 mod calibrate_hand;
 mod convert;
+mod demo;
 mod estimate;
 mod evaluate;
 mod import_calibration;
@@ -33,6 +34,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Draw a moving hand before three cameras, fit it, and say what to do next.
+    Demo(demo::Arguments),
     /// Learn a model for a rig from pictures that are drawn.
     Train(train::Arguments),
     /// Join the parts of a training that was run in shards.
@@ -68,6 +71,7 @@ fn main() -> ExitCode {
 /// Runs a command; its exit code tells whether all of it was done.
 fn run(command: &Command) -> anyhow::Result<ExitCode> {
     match command {
+        Command::Demo(arguments) => demo::run(arguments)?,
         Command::Train(arguments) => train::train(arguments)?,
         Command::Merge(arguments) => train::merge(arguments)?,
         Command::Track(arguments) => return track::run(arguments),

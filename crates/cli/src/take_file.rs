@@ -5,7 +5,9 @@ use std::io::BufReader;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use phalanx_io::take::{Take, read_csv, read_json_lines, read_npz};
+use phalanx_io::take::{
+    Take, read_csv, read_json_lines, read_npz, write_csv, write_json_lines, write_npz,
+};
 
 /// What a file's name ends with, in small letters.
 pub(crate) fn extension(path: &Path) -> String {
@@ -23,6 +25,18 @@ pub(crate) fn read(path: &Path) -> Result<Take> {
         }
     };
     read().with_context(|| path.display().to_string())
+}
+
+/// A take as CSV, JSON Lines or NPZ, by the end of a file's name; `None` for another end.
+pub(crate) fn encoded(take: &Take, kind: &str) -> Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    match kind {
+        "csv" => write_csv(take, &mut bytes)?,
+        "jsonl" => write_json_lines(take, &mut bytes)?,
+        "npz" => bytes = write_npz(take)?,
+        _ => return Ok(None),
+    }
+    Ok(Some(bytes))
 }
 
 /// A file's name without its folder and end.

@@ -1,11 +1,11 @@
 //! `phalanx track`.
 
-mod take;
+pub(crate) mod take;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Result, bail, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use phalanx::{
     FrameFit, Progress, Proportions, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take,
@@ -13,16 +13,16 @@ use phalanx::{
 use phalanx_camera::Camera;
 use phalanx_cli::files::Output;
 use phalanx_hand::{HandShape, Side};
-use phalanx_io::take::{Take, write_csv, write_json_lines, write_npz};
+use phalanx_io::take::Take;
 use rayon::prelude::*;
 
-use crate::input;
 use crate::progress::Bar;
 use crate::recording::reader::Reader;
 use crate::recording::source::{RecordingArguments, Source};
 use crate::recording::timeline::Timeline;
 use crate::rig::check;
 use crate::side::SideName;
+use crate::{input, take_file};
 
 /// Recordings of up to so many moments are fitted as a whole. Of longer ones as many moments, evenly spread,
 /// tell the hand, and then every frame is fitted with it, so that memory does not grow with the recording.
@@ -74,7 +74,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let timeline = reader.timeline.clone();
     let (fit, frames) = fit(&source, reader, &settings, &mut failures)?;
     let take = written(&source.cameras, &timeline, &fit, &frames, arguments.rate);
-    out.write(&encoded(&take, &kind)?)?;
+    let bytes = take_file::encoded(&take, &kind)?.context("the kind was checked")?;
+    out.write(&bytes)?;
     if let Some(out) = hand_out {
         out.write(fit.hand.to_toml().as_bytes())?;
     }
@@ -121,9 +122,8 @@ fn kind(out: &Path) -> Result<String> {
     if out == Path::new("-") {
         return Ok("csv".to_owned());
     }
-    let kind = out.extension().map(|kind| kind.to_string_lossy().to_lowercase());
-    match kind {
-        Some(kind) if ["csv", "jsonl", "npz"].contains(&kind.as_str()) => Ok(kind),
+    match take_file::extension(out) {
+        kind if ["csv", "jsonl", "npz"].contains(&kind.as_str()) => Ok(kind),
         _ => bail!(
             "{}: the name must end with .csv, .jsonl or .npz; `phalanx convert` writes other formats",
             out.display()
@@ -176,17 +176,6 @@ fn written(
     };
     let header = take::header(cameras, fit, (!has_times).then_some(rate));
     Take { header, frames: frames.iter().enumerate().map(frame).collect() }
-}
-
-/// The take as a file of a kind.
-fn encoded(take: &Take, kind: &str) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    match kind {
-        "jsonl" => write_json_lines(take, &mut bytes)?,
-        "npz" => bytes = write_npz(take)?,
-        _ => write_csv(take, &mut bytes)?,
-    }
-    Ok(bytes)
 }
 
 /// Says how it went; some frames that could not be read make another exit code.

@@ -7,7 +7,7 @@ use phalanx_io::take::{FrameView, PoseEstimate, TakeFrame, TakeHeader};
 use crate::recording::timeline::Moment;
 
 /// What holds for all frames.
-pub(super) fn header(cameras: &[Camera], fit: &TakeFit, rate_hz: Option<f64>) -> TakeHeader {
+pub(crate) fn header(cameras: &[Camera], fit: &TakeFit, rate_hz: Option<f64>) -> TakeHeader {
     TakeHeader {
         hand: fit.hand.clone(),
         world_from_hand: fit.volume.volume.rest_frame(),
@@ -18,7 +18,7 @@ pub(super) fn header(cameras: &[Camera], fit: &TakeFit, rate_hz: Option<f64>) ->
 }
 
 /// One frame. Where no view shows a hand, there is no pose.
-pub(super) fn frame(
+pub(crate) fn frame(
     cameras: &[Camera],
     (index, moment): (usize, &Moment),
     time: f64,

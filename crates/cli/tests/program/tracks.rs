@@ -124,3 +124,18 @@ fn encode(folder: &Path, video: &Path) {
     ffmpeg.args(["-c:v", "libx264", "-bf", "2", "-crf", "10", "-pix_fmt", "yuv420p"]).arg(video);
     assert!(ffmpeg.status().unwrap().success());
 }
+
+#[test]
+fn the_demo_goes_to_a_new_folder_and_to_no_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let outcome = run(folder.path(), ["demo", "--out", "demo"]);
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    let demo = folder.path().join("demo");
+    let whole = read_csv(std::fs::File::open(demo.join("take.csv")).unwrap()).unwrap();
+    assert_eq!(whole.frames.len(), 24);
+    assert!(whole.frames.iter().all(phalanx_io::take::TakeFrame::is_trusted));
+    assert!(demo.join("sheet.png").is_file() && demo.join("rig.toml").is_file());
+    let again = run(folder.path(), ["demo", "--out", "demo"]);
+    assert_eq!(again.code, Some(2), "{again:?}");
+    assert!(again.err.contains("not empty"), "{again:?}");
+}
