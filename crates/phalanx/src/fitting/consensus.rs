@@ -48,9 +48,15 @@ pub fn estimate_volume(
     Ok(VolumeEstimate::around(&middle, found.iter().filter(agrees), &hand))
 }
 
-/// How frames are fitted: hand and cameras are taken as they are, and starts are many.
+/// How frames are fitted while it is not known which views agree: hand and cameras are taken as they
+/// are, and starts are many.
 pub(super) fn refinement() -> Refinement {
-    Refinement { retries: 0, disagreement: Some(DISAGREEMENT), ..Refinement::of_noise(NOISE) }
+    Refinement { disagreement: Some(DISAGREEMENT), ..believing() }
+}
+
+/// How frames are fitted when all views that are left agree.
+pub(super) fn believing() -> Refinement {
+    Refinement { retries: 0, ..Refinement::of_noise(NOISE) }
 }
 
 /// A border that is as far from the hand's as this, in pixels of a crop, begins to count less: a quarter

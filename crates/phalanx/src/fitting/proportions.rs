@@ -36,12 +36,15 @@ impl KnownHand {
 }
 
 /// The hand learnt from half of some frames, beginning with the mean hand, if frames of the other half
-/// then fit better than with the hand that they were fitted with; else `None`.
+/// then fit better than with the hand that they were fitted with; else `None`. A place of the best view's
+/// border tells as much as `independent` places that err alone: so much less is the hand's energy to
+/// outweigh what is known of people's hands.
 pub(super) fn learn(
     mean: &HandShape,
     fitter: &FrameFitter<'_>,
     found: &[Option<Found>],
     rest: &DAffine3,
+    independent: f64,
 ) -> Result<Option<KnownHand>> {
     let found: Vec<&Found> = found.iter().flatten().collect();
     let frame = |found: &Found| {
@@ -58,7 +61,9 @@ pub(super) fn learn(
         return Ok(None);
     }
     let refinement = fitter.refinement.clone();
-    let calibration = Calibration { refinement, hand: POPULATION, cameras: None };
+    let share = independent.min(1.0).sqrt();
+    let people = HandDoubt { size: share * POPULATION.size, each: share * POPULATION.each };
+    let calibration = Calibration { refinement, hand: people, cameras: None };
     let calibrated = calibration.run(mean, rest, &seen)?;
     let energy = |hand: &HandShape| -> Result<f64> {
         let of_frame = |frame: &CalibrationFrame| -> Result<f64> {
@@ -69,7 +74,8 @@ pub(super) fn learn(
         Ok(energies.iter().sum())
     };
     let fits_better = energy(&calibrated.hand)? < energy(fitter.hand)?;
-    Ok(fits_better.then_some(KnownHand { shape: calibrated.hand, std: calibrated.hand_std }))
+    let std = calibrated.hand_std.iter().map(|std| std / share).collect();
+    Ok(fits_better.then_some(KnownHand { shape: calibrated.hand, std }))
 }
 
 /// Every other item, and those between.

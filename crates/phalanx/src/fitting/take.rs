@@ -90,6 +90,7 @@ pub fn fit_take(
     progress: &dyn Progress,
 ) -> Result<TakeFit> {
     let (prior, refinement) = (starts::pose_prior()?, consensus::refinement());
+    let believing = consensus::believing();
     let mut take = Take::of(cameras, &settings.hand, &prior, &refinement);
     let keys = consensus::key_frames(cameras, frames, &take.fitter(Weights::Relative), progress)?;
     let middle = consensus::agreed(&keys, &take.hand.shape)?;
@@ -97,11 +98,13 @@ pub fn fit_take(
         passes::first(cameras, frames, &take.fitter(Weights::Relative), &[middle], progress)?;
     let found = passes::again(&take.fitter(Weights::Relative), &found, Postures::All, progress)?;
     let (_, mut found) = passes::agreeing(&take.fitter(Weights::Relative), &found, progress)?;
+    take.refinement = &believing;
     take.weigh(&found)?;
     if settings.proportions == Proportions::FromTake {
         for _ in 0..ROUNDS {
-            let fitter = take.fitter(Weights::Absolute);
-            let learnt = proportions::learn(&take.mean, &fitter, &found, &middle)?;
+            let fitter = take.fitter(Weights::Relative);
+            let independent = take.weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+            let learnt = proportions::learn(&take.mean, &fitter, &found, &middle, independent)?;
             let Some(learnt) = learnt else { break };
             take.hand = learnt;
             let fitter = take.fitter(Weights::Relative);
