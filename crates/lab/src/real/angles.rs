@@ -3,8 +3,6 @@
 use glam::DVec3;
 use phalanx_hand::JOINTS;
 
-use super::reference::FingerState;
-
 /// How many angles there are.
 pub const COUNT: usize = 15;
 
@@ -17,6 +15,15 @@ const PLACES: [[&str; 3]; 2] = [["CMC", "MCP", "IP"], ["MCP", "PIP", "DIP"]];
 /// The bend below which a finger, and below which a thumb is extended, degrees.
 const EXTENDED_DEG: f64 = 72.5;
 const THUMB_EXTENDED_DEG: f64 = 50.0;
+
+/// Whether a finger is extended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FingerState {
+    /// Bent by less than the limit.
+    Extended,
+    /// Bent by more.
+    Folded,
+}
 
 /// The name of the k-th angle: digit and joint.
 pub fn name(k: usize) -> String {

@@ -7,21 +7,12 @@ use anyhow::{Context, Result, ensure};
 use glam::{DVec2, DVec3};
 use phalanx_hand::JOINTS;
 
-use super::angles::{self, BoneAngles};
+use super::angles::{self, BoneAngles, FingerState};
 use super::frame::FrameName;
 use super::table::Table;
 
 /// Degrees by which the reference's views may differ for an angle to count.
 const AGREED_DEG: f64 = 10.0;
-
-/// Whether a finger is extended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FingerState {
-    /// Bent by less than the limit.
-    Extended,
-    /// Bent by more.
-    Folded,
-}
 
 /// The 21 points of one frame, those that are known.
 pub type Points<V> = [Option<V>; JOINTS];

@@ -3,10 +3,9 @@
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use faer::{Mat, MatRef};
-use phalanx::{Preset, RegressorConfig};
+use phalanx::{Framing, Preset, RegressorConfig};
 use phalanx_rvm::{Bandwidth, KernelRidge, Model, NystromRidge};
 
-use super::presets::Answer;
 use crate::baselines::neighbours::nearest_mean;
 use crate::data::described::Samples;
 use crate::eval::table1::{PaperCounts, TableMethod};
@@ -40,6 +39,24 @@ pub(crate) enum Method {
     Refined,
     /// The same, with the hand calibrated from 20 other frames.
     RefinedOwnHand,
+}
+
+/// How a learnt preset answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// By its estimate.
+    Estimate,
+    /// By that refined, with the hand as given.
+    Refined,
+    /// By that refined, with the hand calibrated from other frames.
+    RefinedOwnHand,
+}
+
+impl Answer {
+    /// Hands are calibrated from whole pictures only.
+    pub(crate) fn is_given(self, framing: Framing) -> bool {
+        framing == Framing::Picture || self != Self::RefinedOwnHand
+    }
 }
 
 /// Something that estimates poses from descriptors.

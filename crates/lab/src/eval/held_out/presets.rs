@@ -14,29 +14,12 @@ use rayon::prelude::*;
 
 use super::Ground;
 use super::errors::Truth;
+use super::method::Answer;
 use super::refined::{self, Starts};
 use super::row::{Outcome, Row};
 use crate::data::sets::{self, Set};
 use crate::eval::table1::single_view;
 use crate::recipes::{Trained, trained};
-
-/// How a learnt preset answers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Answer {
-    /// By its estimate.
-    Estimate,
-    /// By that refined, with the hand as given.
-    Refined,
-    /// By that refined, with the hand calibrated from other frames.
-    RefinedOwnHand,
-}
-
-impl Answer {
-    /// Hands are calibrated from whole pictures only.
-    fn is_given(self, framing: Framing) -> bool {
-        framing == Framing::Picture || self != Self::RefinedOwnHand
-    }
-}
 
 /// What the cameras show, as presets look at it.
 enum Frame {
