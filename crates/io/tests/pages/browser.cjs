@@ -59,6 +59,8 @@ async function useEveryControl(page) {
   for (const colorScheme of ["light", "dark"]) {
     for (const width of [400, 1280, 2560]) {
       const context = await browser.newContext({ viewport: { width, height: 900 }, colorScheme, offline: true });
+      // Programs draw here without a graphics card, and others may be at work.
+      context.setDefaultTimeout(120_000);
       const page = await context.newPage();
       page.on("console", (message) => complaints.push(`${message.type()}: ${message.text()}`));
       page.on("pageerror", (error) => complaints.push(`error: ${error}`));
@@ -72,7 +74,7 @@ async function useEveryControl(page) {
       await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
       const picture = (end) => file.replace(".html", `-${width}-${colorScheme}${end}.png`);
       await page.screenshot({ path: picture("") });
-      await page.screenshot({ path: picture("-whole"), fullPage: true });
+      if (width === 1280) await page.screenshot({ path: picture("-whole"), fullPage: true });
       if (width !== 2560) {
         await page.addScriptTag({ path: axe }).catch(() => page.evaluate(require("fs").readFileSync(axe, "utf8")));
         const { violations } = await page.evaluate(() => window.axe.run());
