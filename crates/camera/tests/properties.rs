@@ -158,7 +158,9 @@ proptest! {
 
     #[test]
     fn undistort_finds_whatever_distort_made(d in lenses(), x in -1.5..1.5, y in -1.5..1.5) {
-        let point = DVec2::new(x, y);
+        // Beyond 45 degrees, what is not radial may fold a lens of all coefficients over.
+        let has_all = matches!(d, Lens::Perspective(d) if d.s1 != 0.0);
+        let point = DVec2::new(x, y) * if has_all { 2.0 / 3.0 } else { 1.0 };
         // Leave out the surroundings of the fold, where the inverse is ill-conditioned.
         prop_assume!(least_slope(&d, point.length()) > 0.2);
         let back = d.undistort(d.distort(point));
