@@ -7,7 +7,7 @@ use phalanx_refine::Refinement;
 use rayon::prelude::*;
 
 use super::frame_fit::{Found, FrameFitter};
-use super::observation::{ViewConfig, fitted_hand, length_mm};
+use super::observation::{Sight, fitted_hand, length_mm};
 use super::{TakeFrame, starts};
 use crate::{Error, NoProgress, Progress, Result};
 
@@ -80,7 +80,7 @@ pub(super) fn key_frames(
     let chosen = evenly(frames.len(), KEY_FRAMES);
     progress.begin("look for the hand", chosen.len());
     let search = |&k: &usize| {
-        let found = fitter.search(&ViewConfig::of(cameras, &frames[k].masks)?);
+        let found = fitter.search(&Sight::of(cameras, &frames[k].masks)?);
         progress.step();
         found
     };

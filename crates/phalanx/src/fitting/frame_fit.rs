@@ -5,7 +5,7 @@ use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::{Evidence, Level, PosePrior, Refined, Refinement, Screened};
 
 use super::consensus::DISAGREEMENT;
-use super::observation::{self, ViewConfig};
+use super::observation::{self, Sight};
 use super::starts;
 use crate::Result;
 use crate::localize::{Ball, HandCrop, Placement};
@@ -80,7 +80,7 @@ struct Screening {
 impl FrameFitter<'_> {
     /// Looks for a hand with nothing known but what the views saw: at every placement, in every
     /// direction about the forearm; `None` where no view has anything like a hand.
-    pub(super) fn search(&self, view_config: &ViewConfig) -> Result<Option<Found>> {
+    pub(super) fn search(&self, sight: &Sight) -> Result<Option<Found>> {
         let guess = |placement: &Placement| {
             let turned = (0..TURNS).flat_map(|turn| {
                 let mut pose = Pose::REST;
@@ -90,33 +90,29 @@ impl FrameFitter<'_> {
             let rest = starts::frame_of(placement.wrist, placement.arm);
             Guess { rest, starts: turned.collect() }
         };
-        self.best_of(view_config, view_config.placements.iter().map(guess))
+        self.best_of(sight, sight.placements.iter().map(guess))
     }
 
     /// Looks for a hand near where hands of other frames are: `frames` are theirs.
-    pub(super) fn search_near(
-        &self,
-        view_config: &ViewConfig,
-        frames: &[DAffine3],
-    ) -> Result<Option<Found>> {
+    pub(super) fn search_near(&self, sight: &Sight, frames: &[DAffine3]) -> Result<Option<Found>> {
         let at = |rest: DAffine3| Guess { rest, starts: starts::extremes(&Pose::REST).to_vec() };
-        let own = view_config.placements.iter().take(GUESSES).flat_map(|placement| {
+        let own = sight.placements.iter().take(GUESSES).flat_map(|placement| {
             let turned = frames.iter().map(|frame| starts::turned_to(placement, frame));
             let moved = |frame: &DAffine3| DAffine3 { translation: placement.wrist, ..*frame };
             turned.chain(frames.iter().map(moved))
         });
-        self.best_of(view_config, own.chain(frames.iter().copied()).map(at))
+        self.best_of(sight, own.chain(frames.iter().copied()).map(at))
     }
 
     /// The best fit among some guesses.
     fn best_of(
         &self,
-        view_config: &ViewConfig,
+        sight: &Sight,
         guesses: impl Iterator<Item = Guess>,
     ) -> Result<Option<Found>> {
         let mut screenings: Vec<Screening> = Vec::new();
         for guess in guesses {
-            screenings.extend(self.screened(view_config, guess)?);
+            screenings.extend(self.screened(sight, guess)?);
         }
         screenings.sort_by(|a, b| a.unexplained.total_cmp(&b.unexplained));
         screenings.truncate(GUESSES);
@@ -136,9 +132,9 @@ impl FrameFitter<'_> {
         Ok(best)
     }
 
-    fn screened(&self, view_config: &ViewConfig, guess: Guess) -> Result<Option<Screening>> {
+    fn screened(&self, sight: &Sight, guess: Guess) -> Result<Option<Screening>> {
         let Guess { rest, starts } = guess;
-        let crops = view_config.crops(self.ball(&rest));
+        let crops = sight.crops(self.ball(&rest));
         let evidence = self.evidence(&crops, &vec![false; crops.len()], &rest);
         if evidence.is_empty() {
             return Ok(None);

@@ -46,7 +46,7 @@ pub(super) fn fitted_hand(hand: &HandShape) -> HandShape {
 }
 
 /// A frame in which hands were looked for.
-pub(super) struct ViewConfig {
+pub(super) struct Sight {
     views: Vec<View>,
     detections: Vec<Detections>,
     pub(super) placements: Vec<Placement>,
@@ -58,7 +58,7 @@ struct View {
     is_empty: bool,
 }
 
-impl ViewConfig {
+impl Sight {
     /// Looks for hands in the masks of a frame, one for each camera, of any size.
     ///
     /// # Errors

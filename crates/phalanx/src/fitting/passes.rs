@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::TakeFrame;
 use super::frame_fit::{Found, FrameFitter, Postures};
-use super::observation::ViewConfig;
+use super::observation::Sight;
 use super::views::{self, Usual};
 use crate::{Progress, Result};
 
@@ -23,7 +23,7 @@ pub(super) fn first(
 ) -> Result<Vec<Option<Found>>> {
     progress.begin("fit each frame", frames.len());
     let search = |frame: &TakeFrame| {
-        let found = fitter.search_near(&ViewConfig::of(cameras, &frame.masks)?, near);
+        let found = fitter.search_near(&Sight::of(cameras, &frame.masks)?, near);
         progress.step();
         found
     };
@@ -37,7 +37,7 @@ pub(super) fn again(
     postures: Postures,
     progress: &dyn Progress,
 ) -> Result<Vec<Option<Found>>> {
-    progress.begin("fit each frame extra_features its neighbours", found.len());
+    progress.begin("fit each frame beside its neighbours", found.len());
     let once = |k: usize| -> Result<Option<Found>> {
         let fitted = match &found[k] {
             Some(own) => {
