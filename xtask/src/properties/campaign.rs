@@ -99,7 +99,7 @@ impl Campaign {
             _ => PIECE,
         };
         let draw = Draw {
-            rng_seed: u64::from(seed) << 32 | u64::from(progress.cases),
+            rng_seed: (u64::from(seed) << 32) | u64::from(progress.cases),
             cases: piece.min(left),
         };
         if let Some(seconds) = self.attempt(property, draw)? {

@@ -96,7 +96,7 @@ impl SceneSampler {
     /// hands.
     #[must_use]
     pub fn fresh(&self) -> Self {
-        let other = |seed: u64| (seed & !0xff) | (seed & 0xff) + 5;
+        let other = |seed: u64| (seed & !0xff) | ((seed & 0xff) + 5);
         Self {
             pose_seed: other(self.pose_seed),
             augmentation_seed: other(self.augmentation_seed),
