@@ -74,8 +74,8 @@ fn pose(moment: usize) -> Pose {
         let angles = [0.0, 1.1 * bent, 1.4 * bent, 0.9 * bent];
         finger.dofs().into_iter().zip(angles).for_each(|(dof, angle)| pose[dof] = angle);
     }
-    pose[Dof::ThumbAbduction] = 0.4;
-    pose[Dof::ThetaZ] = 0.7 + 0.4 * (1.3 * at).cos();
+    pose[Dof::ThumbAbduction] = 0.1;
+    pose[Dof::ThetaZ] = 0.5 + 0.4 * (1.3 * at).cos();
     pose
 }
 

@@ -82,10 +82,7 @@ fn what_cannot_be_trained_is_named_and_leaves_nothing() {
         (&["--shard", "3/2"], "there is no shard 3 of 2"),
         (&["--cameras", "left"], "left"),
         (&["--rig", "missing.toml"], "missing.toml"),
-        (
-            &["--rig", "away.toml"],
-            "of 150 training scenes cannot be used, more than 5 %: camera 'top'",
-        ),
+        (&["--rig", "away.toml"], "the volume's center_mm lies outside its picture"),
         (&["--poses", "missing.csv"], "missing.csv"),
     ] {
         let arguments = ["train", "--preset", "fast", "--out", "out"].iter().chain(arguments);
