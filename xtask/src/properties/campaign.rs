@@ -132,29 +132,33 @@ impl Campaign {
 
     /// What was tried and what was found, for people.
     pub(super) fn report(&self, properties: &[Property], seeds: &[u32], cases: u32) -> String {
-        let mut page = String::new();
-        for &seed in seeds {
-            let all = properties.iter().map(|property| self.progress(&property.to_string(), seed));
-            let tried: Vec<Progress> = all.filter(|progress| progress.cases > 0).collect();
-            let complete = tried.iter().filter(|progress| progress.cases >= progress.wanted(cases));
-            let slow = tried.iter().filter(|progress| progress.is_slow());
-            let drawn: u64 = tried.iter().map(|progress| u64::from(progress.cases)).sum();
-            page += &format!(
-                "seed {seed}: {} of {} properties tried, {} of them on all {cases} cases \
-                 (a tenth of the {} slow ones); {drawn} cases\n",
-                tried.len(),
-                properties.len(),
-                complete.count(),
-                slow.count(),
-            );
-        }
-        for (name, Find { draw: Draw { rng_seed, cases }, message }) in &self.state.finds {
-            page += &format!(
+        let report = seeds.iter().map(|&seed| self.drawn(properties, seed, cases));
+        let finds = self.state.finds.iter().map(|(name, Find { draw, message })| {
+            let Draw { rng_seed, cases } = draw;
+            format!(
                 "\nfailed: {name}\n{message}\nagain: PROPTEST_RNG_SEED={rng_seed} \
                  PROPTEST_CASES={cases} cargo test --manifest-path {name} -- --exact\n"
-            );
-        }
-        page + &format!("{} properties failed\n", self.state.finds.len())
+            )
+        });
+        let report: String = report.chain(finds).collect();
+        format!("{report}{} properties failed\n", self.state.finds.len())
+    }
+
+    /// How many cases a seed had.
+    fn drawn(&self, properties: &[Property], seed: u32, cases: u32) -> String {
+        let all = properties.iter().map(|property| self.progress(&property.to_string(), seed));
+        let tried: Vec<Progress> = all.filter(|progress| progress.cases > 0).collect();
+        let complete = tried.iter().filter(|progress| progress.cases >= progress.wanted(cases));
+        let slow = tried.iter().filter(|progress| progress.is_slow());
+        let drawn: u64 = tried.iter().map(|progress| u64::from(progress.cases)).sum();
+        format!(
+            "seed {seed}: {} of {} properties tried, {} of them on all {cases} cases \
+             (a tenth of the {} slow ones); {drawn} cases\n",
+            tried.len(),
+            properties.len(),
+            complete.count(),
+            slow.count(),
+        )
     }
 
     fn write(&self) -> Result<()> {
