@@ -67,7 +67,14 @@ impl Refinement {
         let open = || Error::Precision {
             reason: "leaves directions open that the silhouettes do not tell".to_owned(),
         };
-        let covariance = hessian.llt(Side::Lower).map_err(|_| open())?.inverse();
+        // Scaled to a diagonal of ones: radians, millimetres and logarithms are far apart.
+        let scale: Vec<f64> =
+            (0..hessian.nrows()).map(|k| hessian[(k, k)].sqrt().recip()).collect();
+        let scaled =
+            Mat::from_fn(scale.len(), scale.len(), |i, j| hessian[(i, j)] * scale[i] * scale[j]);
+        let inverse = scaled.llt(Side::Lower).map_err(|_| open())?.inverse();
+        let covariance =
+            Mat::from_fn(scale.len(), scale.len(), |i, j| inverse[(i, j)] * scale[i] * scale[j]);
         let dofs = prior.dofs();
         let mut std = [0.0; Dof::COUNT];
         for (k, dof) in dofs.iter().enumerate() {

@@ -211,7 +211,12 @@ impl FrameFitter<'_> {
         let screened = self.screen(rest, evidence, starts)?;
         let mut best: Option<Refined> = None;
         for start in distinct(&screened, KEPT) {
-            let refined = self.refinement.run(self.hand, rest, evidence, &start, self.prior)?;
+            let refined = match self.refinement.run(self.hand, rest, evidence, &start, self.prior) {
+                Ok(refined) => refined,
+                // One view may leave a pose without a covariance; other poses have one.
+                Err(phalanx_refine::Error::Precision { .. }) => continue,
+                Err(error) => return Err(error.into()),
+            };
             if best.as_ref().is_none_or(|best| refined.energy < best.energy) {
                 best = Some(refined);
             }

@@ -64,7 +64,12 @@ pub(super) fn learn(
     let share = independent.min(1.0).sqrt();
     let people = HandDoubt { size: share * POPULATION.size, each: share * POPULATION.each };
     let calibration = Calibration { refinement, hand: people, cameras: None };
-    let calibrated = calibration.run(mean, rest, &seen)?;
+    let calibrated = match calibration.run(mean, rest, &seen) {
+        Ok(calibrated) => calibrated,
+        // What these frames leave open stays as it was.
+        Err(phalanx_refine::Error::Precision { .. }) => return Ok(None),
+        Err(error) => return Err(error.into()),
+    };
     let energy = |hand: &HandShape| -> Result<f64> {
         let of_frame = |frame: &CalibrationFrame| -> Result<f64> {
             let CalibrationFrame { evidence, start, prior } = frame;

@@ -3,6 +3,7 @@
 use glam::{DAffine3, DVec3};
 use phalanx_camera::Camera;
 use phalanx_hand::{Dof, JOINTS, Pose};
+use phalanx_refine::Posterior;
 
 use super::frame_fit::{Found, FrameFitter};
 use super::proportions::KnownHand;
@@ -54,6 +55,8 @@ pub enum Missing {
 pub enum FitDoubt {
     /// No view shows a hand; the pose is that of the nearest frame that does.
     NotSeen,
+    /// The views leave the pose open; its deviations are infinite.
+    Open,
     /// More of the borders is left unexplained than is usual: this share, of at most so much.
     PoorFit {
         /// Share of the borders, 0 to 1.
@@ -90,7 +93,16 @@ impl Reporter<'_> {
         let own = found.pose_in(&frame, hand);
         let known = &self.hand.std;
         let posterior =
-            fitter.refinement.posterior(hand, &frame, &evidence, &own, fitter.prior, known)?;
+            fitter.refinement.posterior(hand, &frame, &evidence, &own, fitter.prior, known);
+        let mut doubts = Vec::new();
+        let posterior = match posterior {
+            Ok(posterior) => posterior,
+            Err(phalanx_refine::Error::Precision { .. }) => {
+                doubts.push(FitDoubt::Open);
+                Posterior { std: [f64::INFINITY; Dof::COUNT], joints: [f64::INFINITY; JOINTS] }
+            }
+            Err(error) => return Err(error.into()),
+        };
         let agreements = views::agreements(fitter, found)?;
         let views = agreements.iter().zip(&found.left_out).map(|(agreement, &left_out)| ViewFit {
             missing: match (agreement, left_out) {
@@ -104,7 +116,6 @@ impl Reporter<'_> {
         let used = || (0..views.len()).filter(|&view| views[view].missing.is_none());
         let shares = used().filter_map(|view| Some(agreements[view]?.unexplained));
         let unexplained = shares.sum::<f64>() / used().count().max(1) as f64;
-        let mut doubts = Vec::new();
         if unexplained > self.usual.most {
             doubts.push(FitDoubt::PoorFit { unexplained, usual: self.usual.most });
         }

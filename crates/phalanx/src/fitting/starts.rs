@@ -10,9 +10,10 @@ use crate::{ItemRng, Result};
 /// Poses from the coupled prior that tell how angles go together.
 const POSTURES: u64 = 2000;
 
-/// Standard deviations of what is not known at all: any turn, anywhere before the cameras.
-const ANY_TURN: f64 = 10.0;
-const ANYWHERE_MM: f64 = 1e4;
+/// Standard deviations of what is not known at all: any turn, anywhere within a room's reach of where the
+/// fit begins. One view leaves the distance open; a wider prior would leave it without a covariance.
+const ANY_TURN: f64 = std::f64::consts::PI;
+const ANYWHERE_MM: f64 = 1e3;
 
 /// How many standard deviations a joint's plausible range is wide.
 const RANGE: f64 = 6.0;
