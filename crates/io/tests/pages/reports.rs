@@ -160,7 +160,7 @@ fn references_that_are_none_are_refused_with_what_to_do() {
     assert_eq!(by_frame.clock, Clock::Frame);
     assert!(lag(&take(), &by_frame).is_none());
     let steady: String = (0..60)
-        .map(|k| [k as f64 / 30.0, k as f64].map(|n| n.to_string()).join(",") + "\n")
+        .map(|k| [f64::from(k) / 30.0, f64::from(k)].map(|n| n.to_string()).join(",") + "\n")
         .collect();
     let steady = read_csv(("time,index.pip\n".to_owned() + &steady).as_bytes()).unwrap();
     assert!(lag(&take(), &steady).is_none(), "a steady motion has no lag");

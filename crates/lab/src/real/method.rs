@@ -18,6 +18,9 @@ use super::spoil::Spoil;
 use super::take::{Input, Take};
 use crate::clock::thread_ms;
 
+/// A camera's landmarks, frame by frame, px.
+pub type Landmarks = BTreeMap<FrameName, Points<DVec2>>;
+
 /// What a method looks at: frames of a take through some of its cameras. References are not in it.
 pub struct Sequence<'a> {
     /// The take.
@@ -29,7 +32,7 @@ pub struct Sequence<'a> {
     /// The frames, in order.
     pub frames: &'a [FrameName],
     /// Which masks are spoilt, and the landmarks that it takes to do so, camera by camera.
-    pub spoil: Option<(&'a Spoil, &'a [BTreeMap<FrameName, Points<DVec2>>])>,
+    pub spoil: Option<(&'a Spoil, &'a [Landmarks])>,
 }
 
 impl Sequence<'_> {

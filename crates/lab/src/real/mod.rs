@@ -31,16 +31,15 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use glam::DVec2;
 use phalanx::Progress;
 use serde::Serialize;
 
 use crate::files;
 use crate::progress;
 use frame::{FrameName, FrameRanges};
-use method::{Method, Outcome, Sequence};
+use method::{Landmarks, Method, Outcome, Sequence};
 use methods::{MethodName, Prepared};
-use reference::{Points, Reference};
+use reference::Reference;
 use report::Line;
 use row::Row;
 use score::Scorer;
@@ -195,7 +194,7 @@ impl Evaluation<'_> {
         Input::ALL.into_iter().flat_map(of_input).collect()
     }
 
-    fn spoil(&self) -> Option<(&Spoil, &[BTreeMap<FrameName, Points<DVec2>>])> {
+    fn spoil(&self) -> Option<(&Spoil, &[Landmarks])> {
         Some((self.arguments.spoil.as_ref()?, &self.reference.landmarks))
     }
 

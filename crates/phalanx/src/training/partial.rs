@@ -251,7 +251,8 @@ mod tests {
             |part| part.plan.pilot_x.truncate(3),
             |part| part.scenes = usize::MAX,
             |part| {
-                part.plan.transform = FeatureTransform::Components(BlockPca::from_parts(Vec::new()))
+                part.plan.transform =
+                    FeatureTransform::Components(BlockPca::from_parts(Vec::new()));
             },
             |part| part.statistics = TrainingStatistics::Sums(Vec::new()),
             |part| part.statistics = TrainingStatistics::Samples(BTreeMap::new()),

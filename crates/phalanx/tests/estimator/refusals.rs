@@ -202,7 +202,7 @@ fn a_regressor_that_overflows_is_named() {
         Err(Error::Overflow { dof, .. }) => assert_eq!(dof, "thumb.abduction"),
         Err(other) => panic!("{other}"),
         Ok(found) => {
-            assert!(found.pose.0.iter().chain(found.std.iter().flatten()).all(|v| v.is_finite()))
+            assert!(found.pose.0.iter().chain(found.std.iter().flatten()).all(|v| v.is_finite()));
         }
     }
 }

@@ -9,7 +9,7 @@ use phalanx_rvm::{
 };
 
 use super::data::Problem;
-use super::peers::{Peers, field};
+use super::programs::{Peers, field};
 use super::row::{Figure, Row, Target};
 use crate::clock::{middle, timed};
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use phalanx_codebook::{KMeans, Metric, chi_squared};
 
-use super::peers::{Peers, field};
+use super::programs::{Peers, field};
 use super::row::{Figure, Row, Target};
 use crate::clock::{middle, timed};
 

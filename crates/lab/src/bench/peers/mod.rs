@@ -5,9 +5,9 @@ mod data;
 mod hand;
 mod kmeans;
 mod page;
-mod peers;
 mod prediction;
 mod problems;
+mod programs;
 mod row;
 mod shape_contexts;
 mod widths;
@@ -19,7 +19,7 @@ use clap::{Args, ValueEnum};
 
 use crate::files;
 use crate::page::Page;
-use peers::Peers;
+use programs::Peers;
 use row::Row;
 
 const PAGE: Page<'_> = Page {

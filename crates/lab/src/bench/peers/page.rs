@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::peers::Peers;
+use super::programs::Peers;
 use super::row::{Figure, Row, Target, Verdict};
 
 /// The page, which says what of it was missed.

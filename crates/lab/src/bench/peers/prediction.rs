@@ -4,7 +4,7 @@ use anyhow::Result;
 use phalanx_rvm::faer::Mat;
 use phalanx_rvm::{Bandwidth, Kernel, Model, OrthogonalLeastSquares, Scratch};
 
-use super::peers::Peers;
+use super::programs::Peers;
 use super::row::{Figure, Row, Target};
 use crate::clock::{each, median};
 

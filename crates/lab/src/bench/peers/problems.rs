@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use phalanx_rvm::{Bandwidth, Kernel, RelevanceVectorMachine};
 
 use super::data::Problem;
-use super::peers::{Conversation, Peers};
+use super::programs::{Conversation, Peers};
 use super::row::{Figure, Row, Target};
 use crate::clock::{middle, timed};
 

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use phalanx_shape_context::{Matcher, Orientation, ShapeContexts};
 
 use super::data::matrix;
-use super::peers::Peers;
+use super::programs::Peers;
 use super::row::{Figure, Row, Target};
 use crate::clock::{each, median};
 

@@ -7,7 +7,7 @@ use anyhow::{Result, anyhow};
 use phalanx_rvm::ArdRvm;
 
 use super::data::Problem;
-use super::peers::{Peers, field};
+use super::programs::{Peers, field};
 use super::row::{Figure, Row, Target};
 use crate::clock::{middle, timed};
 

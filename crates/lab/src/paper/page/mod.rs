@@ -1,7 +1,7 @@
 //! `cargo xtask report`: every experiment, and one page for a reader of the paper.
 
 mod course;
-mod page;
+mod html;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -13,7 +13,7 @@ use crate::context::Lab;
 use crate::files;
 use crate::paper::{self, ALL};
 use course::Course;
-use page::Section;
+use html::Section;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     }
     drop(course);
     let path = arguments.out.join("index.html");
-    files::write_whole(&path, page::page(&sections).as_bytes())?;
+    files::write_whole(&path, html::page(&sections).as_bytes())?;
     files::print(&format!("{}\n", path.display()))?;
     let mut code = ExitCode::SUCCESS;
     for Section { experiment, outcome } in &sections {
