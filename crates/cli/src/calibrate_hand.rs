@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use image::DynamicImage;
-use phalanx::{Estimator, Picture, Refiner, Segmenter, Workspace};
+use phalanx::{Estimator, Picture, Refiner, Segmenter, Workspace, mask_from, photograph_from};
 use phalanx_refine::{Calibration, CalibrationFrame, CameraDoubt, Doubt, Moves, Refinement};
 use phalanx_segmentation::SkinModel;
 
@@ -96,12 +96,12 @@ fn frame(
         paths.map(|path| input::picture(&path, None)).collect::<Result<_>>()?;
     let mut workspace = Workspace::default();
     let estimate = if arguments.mask {
-        let masks: Vec<_> = pictures.iter().map(DynamicImage::to_luma8).collect();
+        let masks: Vec<_> = pictures.iter().map(mask_from).collect();
         let masks: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
         estimator.estimate(&masks, &mut workspace)?
     } else {
         let skin = Segmenter::Skin(SkinModel::builtin());
-        let photographs: Vec<_> = pictures.iter().map(DynamicImage::to_rgb8).collect();
+        let photographs: Vec<_> = pictures.iter().map(photograph_from).collect();
         let photographs: Vec<Picture<'_>> =
             photographs.iter().map(|image| Picture::Photograph(image, &skin)).collect();
         estimator.estimate(&photographs, &mut workspace)?

@@ -7,7 +7,7 @@ use clap::Args;
 use image::{DynamicImage, RgbImage, imageops};
 use phalanx::{
     Estimate, Estimator, ObservedView, Picture, RefinedEstimate, Refiner, Segmenter, Workspace,
-    draw_overlay, draw_silhouette, draw_window_overlay, working_window,
+    draw_overlay, draw_silhouette, draw_window_overlay, mask_from, photograph_from, working_window,
 };
 use phalanx_hand::HandShape;
 use phalanx_refine::{Doubt, Refinement};
@@ -133,7 +133,7 @@ fn of_masks(
     pictures: &[DynamicImage],
     workspace: &mut Workspace,
 ) -> Result<Estimate> {
-    let masks: Vec<_> = pictures.iter().map(DynamicImage::to_luma8).collect();
+    let masks: Vec<_> = pictures.iter().map(mask_from).collect();
     for (path, mask) in paths.iter().zip(&masks) {
         if let Some(level @ 1..=127) = mask.iter().max() {
             bail!(
@@ -152,7 +152,7 @@ fn of_photographs(
     workspace: &mut Workspace,
 ) -> Result<Estimate> {
     let skin = Segmenter::Skin(SkinModel::builtin());
-    let photographs: Vec<_> = pictures.iter().map(DynamicImage::to_rgb8).collect();
+    let photographs: Vec<_> = pictures.iter().map(photograph_from).collect();
     let photographs: Vec<Picture<'_>> =
         photographs.iter().map(|image| Picture::Photograph(image, &skin)).collect();
     Ok(estimator.estimate(&photographs, workspace)?)

@@ -180,7 +180,22 @@ pub enum Error {
     /// A JPEG file without its end.
     #[error("the JPEG file is truncated")]
     TruncatedPicture,
-    /// A file that is no picture, a damaged one, or one that is too large.
+    /// A picture that takes too much memory.
+    #[error(
+        "a picture of {width}×{height} px takes {} MiB to decode, {} MiB are allowed; scale it down",
+        needed.div_ceil(1 << 20), most >> 20
+    )]
+    LargePicture {
+        /// Its width, px.
+        width: u32,
+        /// Its height, px.
+        height: u32,
+        /// What decoding it takes, bytes.
+        needed: u64,
+        /// What it may take, bytes.
+        most: u64,
+    },
+    /// A file that is no picture, a damaged one, or one with too long a side.
     #[error("{reason}")]
     Undecodable {
         /// What is wrong with it.

@@ -35,7 +35,7 @@ pub use fitting::{
 pub use global_pose::{GlobalStart, initial_global};
 pub use images::decode::decode_picture;
 pub use images::overlay::{draw_overlay, draw_window_overlay, working_window};
-pub use images::picture::{Picture, Segmenter};
+pub use images::picture::{Picture, Segmenter, mask_from, photograph_from};
 pub use localize::{Arm, Ball, Detections, HandCrop, Placement, associate};
 pub use losses::{LossReason, Losses};
 pub use progress::{NoProgress, Progress};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Result, ensure};
 use image::{DynamicImage, GrayImage};
-use phalanx::TakeFrame;
+use phalanx::{TakeFrame, mask_from, photograph_from};
 use phalanx_camera::Camera;
 use phalanx_segmentation::SkinModel;
 
@@ -129,7 +129,7 @@ fn mask(picture: &DynamicImage, camera: &Camera, pictures: Pictures) -> Result<G
          is it turned or cropped?"
     );
     Ok(match pictures {
-        Pictures::Masks => picture.to_luma8(),
-        Pictures::Photographs => SkinModel::builtin().segment(&picture.to_rgb8()),
+        Pictures::Masks => mask_from(picture),
+        Pictures::Photographs => SkinModel::builtin().segment(&photograph_from(picture)),
     })
 }

@@ -125,11 +125,11 @@ fn png(header: &[u8], chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
 #[test]
 fn huge_claims() {
     let desk = Desk::new();
-    desk.refuses_file(&claiming(100_000, 100_000), &["size exceeds limit"]);
+    desk.refuses_file(&claiming(100_000, 100_000), &["larger than 16384 px on a side"]);
     desk.refuses_file(&claiming(u32::MAX >> 1, 1), &[]);
     desk.refuses_file(&claiming(16_000, 12_000), &[]);
     desk.refuses_file(&claiming(0, 0), &[]);
-    desk.refuses_file(b"P6\n99999 99999\n255\n", &["size exceeds limit"]);
+    desk.refuses_file(b"P6\n99999 99999\n255\n", &["larger than 16384 px on a side"]);
     desk.refuses_file(b"P6\n99999999999 9\n255\n", &[]);
 }
 

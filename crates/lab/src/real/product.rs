@@ -55,12 +55,12 @@ impl Product {
     ) -> Result<Estimate> {
         Ok(match input {
             Input::Masks => {
-                let masks: Vec<GrayImage> = pictures.iter().map(DynamicImage::to_luma8).collect();
+                let masks: Vec<GrayImage> = pictures.iter().map(phalanx::mask_from).collect();
                 let masks: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
                 self.estimator.estimate(&masks, workspace)?
             }
             Input::Photographs => {
-                let images: Vec<RgbImage> = pictures.iter().map(DynamicImage::to_rgb8).collect();
+                let images: Vec<RgbImage> = pictures.iter().map(phalanx::photograph_from).collect();
                 let images: Vec<Picture<'_>> =
                     images.iter().map(|image| Picture::Photograph(image, &self.skin)).collect();
                 self.estimator.estimate(&images, workspace)?

@@ -3,20 +3,22 @@
 use std::io::Cursor;
 use std::panic::catch_unwind;
 
-use image::{
-    DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, ImageResult, Limits,
-};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
+use super::jpeg::{self, Marks};
 use crate::error::{Error, Result};
 
 /// The longest side of a picture that is decoded, px.
 const MOST_PIXELS_ASIDE: u32 = 16_384;
+
 /// How much more memory decoding a JPEG file may take than the picture does: of a progressive one all
 /// coefficients are kept, two bytes each, of up to four channels.
 const JPEG_TIMES: u64 = 4;
 
-/// Decodes a PNG, JPEG or PNM file, the right way up: cameras that were turned say so in the file.
-/// `most_memory` bounds what decoding may take, in bytes; 2^30 is enough for any camera.
+/// Decodes a PNG, JPEG or PNM file, the right way up: cameras that were turned say so in
+/// the file. JPEG files may lack what webcams leave out: Huffman tables that are the standard's, or
+/// nothing but the mark of their end. `most_memory` bounds what decoding may take, in bytes; 2^30 is
+/// enough for any camera.
 ///
 /// ```
 /// use phalanx::{Error, decode_picture};
@@ -29,72 +31,79 @@ const JPEG_TIMES: u64 = 4;
 ///
 /// # Errors
 ///
-/// [`Error::TruncatedPicture`] for a JPEG file that lacks its end; [`Error::Undecodable`] for whatever
-/// else is wrong with a file, a side above 16,384 px or too much memory. Where damage makes a decoder
-/// panic, the panic's hook is called before.
+/// [`Error::TruncatedPicture`] for a JPEG file that lacks its end; [`Error::LargePicture`] for one that
+/// would take too much memory; [`Error::Undecodable`] for whatever else is wrong with a file, or a side
+/// above 16,384 px. Where damage makes a decoder panic, the panic's hook is called before.
 pub fn decode_picture(file: &[u8], most_memory: u64) -> Result<DynamicImage> {
-    // An image error's text tells its cause already. The JPEG decoder quotes some causes together
-    // with the end of their line.
-    let undecodable =
-        |error: ImageError| Error::Undecodable { reason: error.to_string().replace("\\n\"", "\"") };
     let format = image::guess_format(file).map_err(undecodable)?;
-    if format == ImageFormat::Jpeg && is_cut_off(file) {
-        return Err(Error::TruncatedPicture);
+    if format == ImageFormat::Jpeg {
+        return decode_jpeg(file, most_memory);
     }
     if format == ImageFormat::Png && has_part_of_a_colour(file) {
         let reason = "a PNG palette ends within a colour".to_owned();
         return Err(Error::Undecodable { reason });
     }
-    // The decoders are not ours, and notice some damage only where an assertion fails.
-    match catch_unwind(|| decode(file, format, most_memory)) {
-        Ok(decoded) => decoded.map_err(undecodable),
-        Err(_) => Err(Error::Undecodable { reason: "its decoder panicked".to_owned() }),
-    }
+    decode_guarded(file, format, most_memory)
 }
 
-fn decode(file: &[u8], format: ImageFormat, most_memory: u64) -> ImageResult<DynamicImage> {
+/// A JPEG file, also without what webcams leave out.
+fn decode_jpeg(file: &[u8], most_memory: u64) -> Result<DynamicImage> {
+    let marks = Marks::of(file);
+    let file = marks.with_tables(file);
+    if marks.is_whole {
+        return decode_guarded(&file, ImageFormat::Jpeg, most_memory);
+    }
+    // A decoder fills what is missing with grey, and a grey hand is no hand.
+    if !marks.may_lack_its_end_only {
+        return Err(Error::TruncatedPicture);
+    }
+    let mut decoded: Option<DynamicImage> = None;
+    for whole in jpeg::ended(&file) {
+        let next = decode_guarded(&whole, ImageFormat::Jpeg, most_memory)?;
+        if decoded.is_some_and(|before| before != next) {
+            return Err(Error::TruncatedPicture);
+        }
+        decoded = Some(next);
+    }
+    decoded.ok_or(Error::TruncatedPicture)
+}
+
+/// The decoders are not ours, and notice some damage only where an assertion fails.
+fn decode_guarded(file: &[u8], format: ImageFormat, most_memory: u64) -> Result<DynamicImage> {
+    catch_unwind(|| decode(file, format, most_memory))
+        .unwrap_or_else(|_| Err(Error::Undecodable { reason: "its decoder panicked".to_owned() }))
+}
+
+/// An image error's text tells its cause already. The JPEG decoder quotes some causes together with the
+/// end of their line.
+fn undecodable(error: ImageError) -> Error {
+    let reason = match error {
+        ImageError::Limits(_) => format!(
+            "it is larger than {MOST_PIXELS_ASIDE} px on a side, or takes too much memory; scale it down"
+        ),
+        other => other.to_string().replace("\\n\"", "\""),
+    };
+    Error::Undecodable { reason }
+}
+
+fn decode(file: &[u8], format: ImageFormat, most_memory: u64) -> Result<DynamicImage> {
     let mut limits = Limits::default();
     limits.max_image_width = Some(MOST_PIXELS_ASIDE);
     limits.max_image_height = Some(MOST_PIXELS_ASIDE);
     limits.max_alloc = Some(most_memory);
     let mut reader = ImageReader::with_format(Cursor::new(file), format);
-    reader.limits(limits.clone());
-    let mut decoder = reader.into_decoder()?;
+    reader.limits(limits);
+    let mut decoder = reader.into_decoder().map_err(undecodable)?;
     let times = if format == ImageFormat::Jpeg { JPEG_TIMES } else { 1 };
-    limits.reserve(decoder.total_bytes().saturating_mul(times))?;
-    let orientation = decoder.orientation()?;
-    let mut image = DynamicImage::from_decoder(decoder)?;
+    let needed = decoder.total_bytes().saturating_mul(times);
+    if needed > most_memory {
+        let (width, height) = decoder.dimensions();
+        return Err(Error::LargePicture { width, height, needed, most: most_memory });
+    }
+    let orientation = decoder.orientation().map_err(undecodable)?;
+    let mut image = DynamicImage::from_decoder(decoder).map_err(undecodable)?;
     image.apply_orientation(orientation);
     Ok(image)
-}
-
-/// Whether a JPEG file stops before its end-of-image mark. The decoder would fill the rest with
-/// grey, and a grey hand is no hand. What follows that mark, such as a maker's trailer, may hold
-/// anything; what is wrong before it is for the decoder to say.
-fn is_cut_off(jpeg: &[u8]) -> bool {
-    const END_OF_IMAGE: u8 = 0xd9;
-    const START_OF_SCAN: u8 = 0xda;
-    let (mut ahead, mut in_scan) = (jpeg, false);
-    loop {
-        ahead = match *ahead {
-            [] | [0xff] => return true,
-            [0xff, END_OF_IMAGE, ..] => return false,
-            // The start of the image and restarts have no segment; marks may be filled up in front.
-            [0xff, 0x01 | 0xd0..=0xd8, ref after @ ..] => after,
-            [0xff, 0xff, ..] => &ahead[1..],
-            [0xff, mark @ 1..=0xfe, ref segment @ ..] => {
-                let Some(&length) = segment.first_chunk() else { return true };
-                let length = usize::from(u16::from_be_bytes(length));
-                if length < 2 {
-                    return false;
-                }
-                in_scan = mark == START_OF_SCAN;
-                segment.get(length..).unwrap_or_default()
-            }
-            [_, ref after @ ..] if in_scan => after,
-            _ => return false,
-        }
-    }
 }
 
 /// Whether a PNG file has a palette whose length is no multiple of three. The decoder takes for
@@ -125,7 +134,44 @@ mod tests {
         let mut file = Cursor::new(Vec::new());
         picture.write_to(&mut file, ImageFormat::Jpeg).expect("room enough");
         let file = file.into_inner();
-        assert!(matches!(decode_picture(&file, 30_000), Err(Error::Undecodable { .. })));
+        assert!(matches!(decode_picture(&file, 30_000), Err(Error::LargePicture { .. })));
         assert_eq!(decode_picture(&file, 100_000).expect("a picture").width(), 100);
+    }
+
+    /// A picture in which all blocks differ, as a JPEG file.
+    fn file() -> Vec<u8> {
+        let level = |x: u32, y: u32| (x * 7 + y * 13 + (x * y) % 31) as u8;
+        let colour = |x, y| image::Rgb([level(x, y), level(y, x), level(x + y, x)]);
+        let mut file = Cursor::new(Vec::new());
+        let picture = image::RgbImage::from_fn(96, 80, colour);
+        picture.write_to(&mut file, ImageFormat::Jpeg).expect("room enough");
+        file.into_inner()
+    }
+
+    #[test]
+    fn a_file_may_lack_its_end_and_nothing_else() {
+        let whole = file();
+        let decoded = decode_picture(&whole, 1 << 24).expect("a picture");
+        let without_end = whole.strip_suffix(&[0xff, 0xd9]).expect("an end");
+        assert_eq!(decode_picture(without_end, 1 << 24).expect("all is there"), decoded);
+        for missing in [4, 10, 100, 1000] {
+            let cut = &without_end[..without_end.len() - missing];
+            let refused = decode_picture(cut, 1 << 24);
+            assert!(matches!(refused, Err(Error::TruncatedPicture)), "{missing} bytes");
+        }
+    }
+
+    /// Motion JPEG leaves out the tables that are the standard's, which this encoder uses.
+    #[test]
+    fn the_standard_s_tables_may_be_left_out() {
+        let whole = file();
+        let mut without = whole.clone();
+        while let Some(at) = without.windows(2).position(|mark| mark == [0xff, 0xc4]) {
+            let length = usize::from(u16::from_be_bytes([without[at + 2], without[at + 3]]));
+            without.drain(at..at + 2 + length);
+        }
+        assert!(without.len() < whole.len() - 300);
+        let decoded = decode_picture(&without, 1 << 24).expect("a picture");
+        assert_eq!(decoded, decode_picture(&whole, 1 << 24).expect("a picture"));
     }
 }

@@ -1,5 +1,6 @@
 //! Pictures in and out: decoding, segmenting, drawing over.
 
 pub(crate) mod decode;
+mod jpeg;
 pub(crate) mod overlay;
 pub(crate) mod picture;

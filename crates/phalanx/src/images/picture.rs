@@ -1,6 +1,6 @@
 //! What a camera gives.
 
-use image::{GrayImage, RgbImage};
+use image::{DynamicImage, GrayImage, RgbImage};
 use phalanx_segmentation::{BackgroundModel, SkinModel, Wall};
 
 use crate::error::Result;
@@ -30,6 +30,55 @@ impl Picture<'_> {
             Self::Mask(mask) => Ok((*mask).clone()),
         }
     }
+}
+
+/// The silhouette that a picture holds. Where a part of it is transparent, the hand is what is opaque:
+/// of one colour, as a mask in the alpha channel, all of it; else what of it is bright.
+///
+/// ```
+/// use image::{DynamicImage, Rgba, RgbaImage};
+///
+/// // Black where it is opaque, black where it is not.
+/// let alpha = RgbaImage::from_fn(4, 1, |x, _| Rgba([0, 0, 0, if x < 3 { 255 } else { 0 }]));
+/// let mask = phalanx::mask_from(&DynamicImage::from(alpha));
+/// assert_eq!(mask.into_raw(), [255, 255, 255, 0]);
+/// ```
+pub fn mask_from(picture: &DynamicImage) -> GrayImage {
+    let mut mask = picture.to_luma8();
+    let Some(alpha) = varying_alpha(picture) else { return mask };
+    let opaque = |alpha: u8| alpha > 127;
+    let levels = || mask.iter().zip(&alpha).filter(|&(_, &alpha)| opaque(alpha));
+    let is_bright = |&(level, _): &(&u8, &u8)| *level > 127;
+    let is_one_colour =
+        levels().all(|pair| is_bright(&pair)) || !levels().any(|pair| is_bright(&pair));
+    for (level, alpha) in mask.iter_mut().zip(alpha) {
+        *level = match (opaque(alpha), is_one_colour) {
+            (false, _) => 0,
+            (true, true) => 255,
+            (true, false) => *level,
+        };
+    }
+    mask
+}
+
+/// The photograph that a picture holds: what is transparent is black, whatever colour is hidden there.
+pub fn photograph_from(picture: &DynamicImage) -> RgbImage {
+    let mut photograph = picture.to_rgb8();
+    if let Some(alpha) = varying_alpha(picture) {
+        for (pixel, alpha) in photograph.pixels_mut().zip(alpha) {
+            pixel.0 = pixel.0.map(|level| (u16::from(level) * u16::from(alpha) / 255) as u8);
+        }
+    }
+    photograph
+}
+
+/// How opaque each pixel is, if some are not.
+fn varying_alpha(picture: &DynamicImage) -> Option<Vec<u8>> {
+    if !picture.color().has_alpha() {
+        return None;
+    }
+    let alpha: Vec<u8> = picture.to_rgba8().pixels().map(|pixel| pixel.0[3]).collect();
+    alpha.iter().any(|alpha| *alpha < 255).then_some(alpha)
 }
 
 /// How the hand is told from the rest of a photograph.

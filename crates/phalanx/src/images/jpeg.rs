@@ -1,0 +1,145 @@
+//! What webcams leave out of JPEG files.
+
+use std::borrow::Cow;
+
+const START_OF_FRAME: [u8; 2] = [0xc0, 0xc1];
+const HUFFMAN_TABLES: u8 = 0xc4;
+const RESTART_INTERVAL: u8 = 0xdd;
+const END_OF_IMAGE: u8 = 0xd9;
+const START_OF_SCAN: u8 = 0xda;
+
+/// What a file's marks tell.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Marks {
+    /// Whether it ends after its end-of-image mark. What follows that mark, such as a maker's trailer,
+    /// may hold anything; what is wrong before it is for the decoder to say.
+    pub(crate) is_whole: bool,
+    /// Whether all it lacks may be its end: it is no progressive file, and its only scan has begun. A scan
+    /// of several intervals may lack whole ones, which no decoder tells.
+    pub(crate) may_lack_its_end_only: bool,
+    /// Where the first scan begins, if no Huffman table comes before: MJPEG frames share the standard's.
+    pub(crate) lacks_tables_at: Option<usize>,
+}
+
+impl Marks {
+    pub(crate) fn of(jpeg: &[u8]) -> Self {
+        let mut marks = Self::default();
+        let (mut ahead, mut in_scan) = (jpeg, false);
+        let (mut has_tables, mut has_intervals) = (false, false);
+        let (mut components, mut scans) = (0, 0);
+        loop {
+            ahead = match *ahead {
+                [] | [0xff] => return marks,
+                [0xff, END_OF_IMAGE, ..] => {
+                    marks.is_whole = true;
+                    return marks;
+                }
+                // The start of the image and restarts have no segment; marks may be filled up in front.
+                [0xff, 0x01 | 0xd0..=0xd8, ref after @ ..] => after,
+                [0xff, 0xff, ..] => &ahead[1..],
+                [0xff, mark @ 1..=0xfe, ref segment @ ..] => {
+                    let Some(&length) = segment.first_chunk() else { return marks };
+                    let length = usize::from(u16::from_be_bytes(length));
+                    if length < 2 {
+                        marks.is_whole = true;
+                        return marks;
+                    }
+                    has_tables |= mark == HUFFMAN_TABLES;
+                    if START_OF_FRAME.contains(&mark) {
+                        components = segment.get(7).copied().unwrap_or_default();
+                    }
+                    has_intervals |= mark == RESTART_INTERVAL;
+                    in_scan = mark == START_OF_SCAN;
+                    if in_scan {
+                        scans += 1;
+                        let of_all = segment.get(2) == Some(&components);
+                        marks.may_lack_its_end_only =
+                            scans == 1 && components > 0 && of_all && !has_intervals;
+                        if scans == 1 && !has_tables {
+                            marks.lacks_tables_at = Some(jpeg.len() - ahead.len());
+                        }
+                    }
+                    segment.get(length..).unwrap_or_default()
+                }
+                [_, ref after @ ..] if in_scan => after,
+                _ => {
+                    marks.is_whole = true;
+                    return marks;
+                }
+            }
+        }
+    }
+
+    /// The file with the Huffman tables that it lacks.
+    pub(crate) fn with_tables<'a>(&self, jpeg: &'a [u8]) -> Cow<'a, [u8]> {
+        match self.lacks_tables_at {
+            Some(scan) => [&jpeg[..scan], &standard_tables(), &jpeg[scan..]].concat().into(),
+            None => jpeg.into(),
+        }
+    }
+}
+
+/// Copies of a file without its end, each ended another way. Where its scan is complete, a decoder reads
+/// nothing of what they differ in.
+pub(crate) fn ended(jpeg: &[u8]) -> impl Iterator<Item = Vec<u8>> + '_ {
+    // Bits of which a decoder makes different blocks, without the byte that begins marks.
+    let tails = [[0x00; 64], [0xaa; 64], [0x5b; 64]];
+    tails.into_iter().map(move |tail| [jpeg, &tail, &[0xff, END_OF_IMAGE]].concat())
+}
+
+/// The segment of the standard's Huffman tables (ITU-T T.81, tables K.3 to K.6).
+fn standard_tables() -> Vec<u8> {
+    let mut segment = vec![0xff, HUFFMAN_TABLES, 0x01, 0xa2];
+    for (class, counts, values) in [
+        (0x00, DC_COUNTS[0], &DC_VALUES[..]),
+        (0x10, AC_COUNTS[0], &AC_LUMINANCE[..]),
+        (0x01, DC_COUNTS[1], &DC_VALUES[..]),
+        (0x11, AC_COUNTS[1], &AC_CHROMINANCE[..]),
+    ] {
+        segment.push(class);
+        segment.extend(counts);
+        segment.extend(values);
+    }
+    segment
+}
+
+/// How many codes there are of each length from 1 to 16 bits, of luminance and of chrominance.
+const DC_COUNTS: [[u8; 16]; 2] = [
+    [0, 1, 5, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0],
+    [0, 3, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0],
+];
+const AC_COUNTS: [[u8; 16]; 2] = [
+    [0, 2, 1, 3, 3, 2, 4, 3, 5, 5, 4, 4, 0, 0, 1, 0x7d],
+    [0, 2, 1, 2, 4, 4, 3, 4, 7, 5, 4, 4, 0, 1, 2, 0x77],
+];
+
+/// What the codes stand for, in their order.
+const DC_VALUES: [u8; 12] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
+#[rustfmt::skip]
+const AC_LUMINANCE: [u8; 162] = [
+    0x01, 0x02, 0x03, 0x00, 0x04, 0x11, 0x05, 0x12, 0x21, 0x31, 0x41, 0x06, 0x13, 0x51, 0x61, 0x07,
+    0x22, 0x71, 0x14, 0x32, 0x81, 0x91, 0xa1, 0x08, 0x23, 0x42, 0xb1, 0xc1, 0x15, 0x52, 0xd1, 0xf0,
+    0x24, 0x33, 0x62, 0x72, 0x82, 0x09, 0x0a, 0x16, 0x17, 0x18, 0x19, 0x1a, 0x25, 0x26, 0x27, 0x28,
+    0x29, 0x2a, 0x34, 0x35, 0x36, 0x37, 0x38, 0x39, 0x3a, 0x43, 0x44, 0x45, 0x46, 0x47, 0x48, 0x49,
+    0x4a, 0x53, 0x54, 0x55, 0x56, 0x57, 0x58, 0x59, 0x5a, 0x63, 0x64, 0x65, 0x66, 0x67, 0x68, 0x69,
+    0x6a, 0x73, 0x74, 0x75, 0x76, 0x77, 0x78, 0x79, 0x7a, 0x83, 0x84, 0x85, 0x86, 0x87, 0x88, 0x89,
+    0x8a, 0x92, 0x93, 0x94, 0x95, 0x96, 0x97, 0x98, 0x99, 0x9a, 0xa2, 0xa3, 0xa4, 0xa5, 0xa6, 0xa7,
+    0xa8, 0xa9, 0xaa, 0xb2, 0xb3, 0xb4, 0xb5, 0xb6, 0xb7, 0xb8, 0xb9, 0xba, 0xc2, 0xc3, 0xc4, 0xc5,
+    0xc6, 0xc7, 0xc8, 0xc9, 0xca, 0xd2, 0xd3, 0xd4, 0xd5, 0xd6, 0xd7, 0xd8, 0xd9, 0xda, 0xe1, 0xe2,
+    0xe3, 0xe4, 0xe5, 0xe6, 0xe7, 0xe8, 0xe9, 0xea, 0xf1, 0xf2, 0xf3, 0xf4, 0xf5, 0xf6, 0xf7, 0xf8,
+    0xf9, 0xfa,
+];
+#[rustfmt::skip]
+const AC_CHROMINANCE: [u8; 162] = [
+    0x00, 0x01, 0x02, 0x03, 0x11, 0x04, 0x05, 0x21, 0x31, 0x06, 0x12, 0x41, 0x51, 0x07, 0x61, 0x71,
+    0x13, 0x22, 0x32, 0x81, 0x08, 0x14, 0x42, 0x91, 0xa1, 0xb1, 0xc1, 0x09, 0x23, 0x33, 0x52, 0xf0,
+    0x15, 0x62, 0x72, 0xd1, 0x0a, 0x16, 0x24, 0x34, 0xe1, 0x25, 0xf1, 0x17, 0x18, 0x19, 0x1a, 0x26,
+    0x27, 0x28, 0x29, 0x2a, 0x35, 0x36, 0x37, 0x38, 0x39, 0x3a, 0x43, 0x44, 0x45, 0x46, 0x47, 0x48,
+    0x49, 0x4a, 0x53, 0x54, 0x55, 0x56, 0x57, 0x58, 0x59, 0x5a, 0x63, 0x64, 0x65, 0x66, 0x67, 0x68,
+    0x69, 0x6a, 0x73, 0x74, 0x75, 0x76, 0x77, 0x78, 0x79, 0x7a, 0x82, 0x83, 0x84, 0x85, 0x86, 0x87,
+    0x88, 0x89, 0x8a, 0x92, 0x93, 0x94, 0x95, 0x96, 0x97, 0x98, 0x99, 0x9a, 0xa2, 0xa3, 0xa4, 0xa5,
+    0xa6, 0xa7, 0xa8, 0xa9, 0xaa, 0xb2, 0xb3, 0xb4, 0xb5, 0xb6, 0xb7, 0xb8, 0xb9, 0xba, 0xc2, 0xc3,
+    0xc4, 0xc5, 0xc6, 0xc7, 0xc8, 0xc9, 0xca, 0xd2, 0xd3, 0xd4, 0xd5, 0xd6, 0xd7, 0xd8, 0xd9, 0xda,
+    0xe2, 0xe3, 0xe4, 0xe5, 0xe6, 0xe7, 0xe8, 0xe9, 0xea, 0xf2, 0xf3, 0xf4, 0xf5, 0xf6, 0xf7, 0xf8,
+    0xf9, 0xfa,
+];
