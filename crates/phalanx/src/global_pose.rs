@@ -7,9 +7,9 @@
 use glam::{DVec2, DVec3};
 use phalanx_camera::{Rig, triangulate};
 use phalanx_hand::{Dof, HandShape, Pose, Primitive, Side};
-use phalanx_segmentation::LocatedHand;
 
 use crate::sighting::{Sighting, arm};
+use crate::window::PicturedHand;
 use crate::{Error, Estimate, ObservedView, Result};
 
 /// A pose whose global part was found from the hands' places in the views.
@@ -31,8 +31,8 @@ const POSITION_STD: f64 = 8.0;
 
 /// An estimate whose hand is put where its windows show it.
 pub(crate) fn place(rig: &Rig, hand: &HandShape, estimate: Estimate) -> Result<Estimate> {
-    let hand_in = |view: &ObservedView| Some(view.window.as_ref()?.hand);
-    let hands: Vec<Option<LocatedHand>> = estimate.observation.views.iter().map(hand_in).collect();
+    let hand_in = |view: &ObservedView| Some(view.window.as_ref()?.pictured_hand());
+    let hands: Vec<Option<PicturedHand>> = estimate.observation.views.iter().map(hand_in).collect();
     let pose = initial_global(rig, hand, &estimate.pose, &hands)?.pose;
     let mut std = estimate.std;
     for dof in [Dof::ThetaX, Dof::ThetaY] {
@@ -52,8 +52,8 @@ pub(crate) fn place(rig: &Rig, hand: &HandShape, estimate: Estimate) -> Result<E
 /// view the arm is taken to be as nearly as it can be where it is at rest, and the distance
 /// follows from the hand's size.
 ///
-/// `hands` holds, in the order of the rig's cameras, the hand in each picture of the camera's own
-/// size ([`Window::hand`](crate::Window::hand)), or nothing where it is not seen.
+/// `hands` holds the hand in each view's picture ([`Window::pictured_hand`](crate::Window::pictured_hand)), or
+/// nothing where it is not seen. Pictures may have any size.
 ///
 /// # Errors
 /// No view, cameras whose rays are parallel, or a wrist where a lens maps nothing.
@@ -61,14 +61,11 @@ pub fn initial_global(
     rig: &Rig,
     hand: &HandShape,
     fingers: &Pose,
-    hands: &[Option<LocatedHand>],
+    hands: &[Option<PicturedHand>],
 ) -> Result<GlobalStart> {
-    let views: Vec<Sighting> = rig
-        .cameras
-        .iter()
-        .zip(hands)
-        .filter_map(|(camera, hand)| Some(Sighting::new(camera, hand.as_ref()?)))
-        .collect::<Result<_>>()?;
+    let seen = hands.iter().flatten();
+    let views: Vec<Sighting> =
+        seen.map(|seen| Sighting::new(&seen.camera, &seen.hand)).collect::<Result<_>>()?;
     match views.as_slice() {
         [] => Err(Error::Mismatch { part: "views with a hand", found: 0, expected: 1 }),
         [view] => Ok(one_view(rig, hand, fingers, view)),

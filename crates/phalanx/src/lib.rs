@@ -53,4 +53,4 @@ pub use training::recipe::{Encoding, Training, descriptors, targets};
 pub use training::regressor::{LearntMetric, NetworkTraining, RegressorConfig};
 pub use training::shard::Shard;
 pub use training::trainer::{Cost, Trainer};
-pub use window::{Framing, Window, WindowFinder};
+pub use window::{Framing, PicturedHand, Window, WindowFinder};

@@ -6,8 +6,8 @@ mod property;
 use glam::{DVec2, DVec3};
 use image::{GrayImage, Luma};
 use phalanx::{
-    Augmentation, FixedPoses, Framing, MaskNoise, OrientationRule, Picture, Refiner, Scene,
-    SceneDescriber, Training, ViewConfig, Window, WindowFinder, Workspace, initial_global,
+    Augmentation, FixedPoses, Framing, MaskNoise, OrientationRule, Picture, PicturedHand, Refiner,
+    Scene, SceneDescriber, Training, ViewConfig, Window, WindowFinder, Workspace, initial_global,
 };
 use phalanx_camera::{Camera, Distortion, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
@@ -208,6 +208,39 @@ fn hands_are_placed_and_refined_where_they_are() {
     }
 }
 
+/// The same masks as pictures of other sizes than the rig's: hands are placed where they were.
+#[test]
+fn the_size_of_the_pictures_makes_no_difference() {
+    let (rig, hand) = (rig(), HandShape::adult());
+    let estimator =
+        training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
+    let mut workspace = Workspace::default();
+    let mut pose = unseen()[1];
+    [pose[Dof::TX], pose[Dof::TY], pose[Dof::TZ]] = [-20.0, 10.0, 15.0];
+    let mut estimate_at = |size: f64| {
+        let masks: Vec<GrayImage> = rig
+            .cameras
+            .iter()
+            .map(|camera| {
+                let Intrinsics { width, height, .. } = camera.intrinsics;
+                let [width, height] = [width, height].map(|side| (size * f64::from(side)) as u32);
+                let pictured = camera.with_intrinsics(camera.intrinsics.resized(width, height));
+                let solids = hand.pose(&pose, &rig.volume.rest_frame()).primitives;
+                Renderer::new(&pictured).unwrap().silhouette(&solids).unwrap()
+            })
+            .collect();
+        let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
+        estimator.estimate(&pictures, &mut workspace).unwrap().pose
+    };
+    let usual = estimate_at(1.0);
+    for size in [1.5, 2.7, 4.0] {
+        let other = estimate_at(size);
+        let moved = usual.translation().distance(other.translation());
+        // The masks' own pixels are worth some millimetres of a distance along the view.
+        assert!(moved < 15.0, "×{size}: {moved} mm");
+    }
+}
+
 /// A fist of which one finger points on along the arm, so that it looks like a hand on an arm of its own.
 #[test]
 fn a_pointing_finger_is_not_taken_for_a_hand() {
@@ -325,6 +358,7 @@ proptest! {
     fn several_views_tell_the_global_pose(
         t in prop::array::uniform3(-50.0..50.0), lean in prop::array::uniform2(-0.5..0.5),
         theta_z in 0.0..1.57, views in prop::sample::select(vec![vec![0, 1], vec![1, 2], vec![0, 1, 2]]),
+        sizes in prop::array::uniform3(0.5..4.0),
     ) {
         let rig = Rig { cameras: views.iter().map(|&v| rig().cameras[v].clone()).collect(), ..rig() };
         let mut pose = Pose::REST;
@@ -332,8 +366,14 @@ proptest! {
         [pose[Dof::ThetaX], pose[Dof::ThetaY]] = lean;
         pose[Dof::ThetaZ] = theta_z;
         let arm = pose.rotation().z_axis;
-        let hands: Vec<_> =
-            rig.cameras.iter().map(|camera| Some(located(camera, DVec3::from(t), arm))).collect();
+        // Pictures of any size, another for each camera.
+        let pictured = |(camera, size): (&Camera, f64)| {
+            let Intrinsics { width, height, .. } = camera.intrinsics;
+            let [width, height] = [width, height].map(|side| (size * f64::from(side)) as u32);
+            let camera = camera.with_intrinsics(camera.intrinsics.resized(width, height));
+            Some(PicturedHand { hand: located(&camera, DVec3::from(t), arm), camera })
+        };
+        let hands: Vec<_> = rig.cameras.iter().zip(sizes).map(pictured).collect();
         let known = Pose { ..pose };
         let mut fingers = Pose::REST;
         fingers[Dof::ThetaZ] = theta_z;

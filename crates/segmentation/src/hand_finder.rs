@@ -45,6 +45,10 @@ const WRISTS: usize = 3;
 /// The ends of a component that crosses no border: five tips, and where the arm is cut off.
 const ENDS: usize = 6;
 
+/// Of these ends the two that are farthest apart come first: an arm is longer than any digit, so that it is
+/// one of them unless it is cut off near the wrist.
+const LIKELY_ENDS: usize = 2;
+
 /// A section that may be a wrist.
 struct Candidate {
     section: usize,
@@ -67,7 +71,8 @@ impl HandFinder {
     /// Everything in a mask of any size that may be a hand, the likeliest first: each component of
     /// at least [`Cleanup::min_hand`], with its arm coming from each place where it crosses the image
     /// border or, where it crosses none, from each of its ends, and with its wrist at each of the
-    /// few likeliest places along the arm. Speckle is removed first.
+    /// few likeliest places along the arm. Arms from an end that is not one of the two farthest apart
+    /// come last. Speckle is removed first.
     ///
     /// # Errors
     /// Unusable `cleanup`, an image without pixels, or nothing as large as a hand.
@@ -94,14 +99,19 @@ impl HandFinder {
         cleanup: &Cleanup,
         model: &WristModel,
     ) -> Result<Vec<LocatedHand>> {
-        let mut hands = Vec::new();
+        let (mut hands, mut unlikely) = (Vec::new(), Vec::new());
         for component in self.components_of(mask, cleanup)? {
             self.load(component);
-            for source in self.arm_ends() {
-                hands.extend(self.hands_from(&source, component, model));
+            for (number, source) in self.arm_ends().into_iter().enumerate() {
+                let is_likely = number < LIKELY_ENDS || !self.grid.crossings().is_empty();
+                let found = self.hands_from(&source, component, model);
+                (if is_likely { &mut hands } else { &mut unlikely }).extend(found);
             }
         }
-        hands.sort_by(|a, b| a.strangeness.total_cmp(&b.strangeness));
+        for hands in [&mut hands, &mut unlikely] {
+            hands.sort_by(|a, b| a.strangeness.total_cmp(&b.strangeness));
+        }
+        hands.append(&mut unlikely);
         if hands.is_empty() { Err(Error::NoHand) } else { Ok(hands) }
     }
 

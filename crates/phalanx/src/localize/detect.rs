@@ -29,6 +29,8 @@ impl Detections {
         // What is no hand is an answer here, not an error: other views may see one.
         let found = finder.find(mask, &Cleanup::default(), WristModel::builtin());
         let mut hands = found.unwrap_or_default();
+        // Other views can tell which end of an arm is which, so that any end counts alike here.
+        hands.sort_by(|a, b| a.strangeness.total_cmp(&b.strangeness));
         hands.truncate(MOST);
         Self { camera, hands, mask: mask.clone() }
     }

@@ -40,8 +40,18 @@ pub struct Window {
     pub hand: LocatedHand,
     /// From the window's pixels to the picture's.
     to_picture: PixelMap,
-    /// The picture's width and height, px.
-    picture: (u32, u32),
+    /// The real camera, with pixels as the picture has them.
+    pictured: Camera,
+}
+
+/// A hand found in a picture, with the camera whose pixels are that picture's: pictures may have another
+/// size than the rig says, so that pixels alone mean nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PicturedHand {
+    /// The camera, with pixels as the picture has them.
+    pub camera: Camera,
+    /// The hand, px.
+    pub hand: LocatedHand,
 }
 
 impl Window {
@@ -52,13 +62,17 @@ impl Window {
     pub fn onto(camera: &Camera, hand: &LocatedHand) -> Result<Self> {
         let virtual_camera = layout::camera(camera, hand)?;
         let to_picture = PixelMap::between(&virtual_camera, camera);
-        let picture = (camera.intrinsics.width, camera.intrinsics.height);
-        Ok(Self { camera: virtual_camera, hand: *hand, to_picture, picture })
+        Ok(Self { camera: virtual_camera, hand: *hand, to_picture, pictured: camera.clone() })
     }
 
     /// The picture's width and height, px.
     pub fn picture(&self) -> (u32, u32) {
-        self.picture
+        (self.pictured.intrinsics.width, self.pictured.intrinsics.height)
+    }
+
+    /// The hand in the picture.
+    pub fn pictured_hand(&self) -> PicturedHand {
+        PicturedHand { camera: self.pictured.clone(), hand: self.hand }
     }
 
     /// A mask of the picture as the window shows it: 255 where at least half of a pixel is hand.
@@ -74,7 +88,7 @@ impl Window {
     /// # Errors
     /// A silhouette of another size than the window, or without a border.
     pub fn evidence(&self, silhouette: &Silhouette) -> Result<Evidence> {
-        let inside = resample::inside(&self.to_picture, WORKING_SIZE, self.picture);
+        let inside = resample::inside(&self.to_picture, WORKING_SIZE, self.picture());
         let known = |at: DVec2| inside.get_pixel(at.x as u32, at.y as u32).0[0] > 127;
         let evidence = Evidence::within(&self.camera, &silhouette.mask, known)?;
         Ok(evidence.resampled(1.0 / resample::pixels_aside(&self.to_picture, WORKING_SIZE)))
