@@ -11,11 +11,18 @@ use crate::error::{Error, Result};
 /// The longest side of a picture that is decoded, px.
 const MOST_PIXELS_ASIDE: u32 = 16_384;
 
-/// How much more memory decoding a JPEG file may take than the picture does: of a progressive one all
-/// coefficients are kept, two bytes each, of up to four channels.
-const JPEG_TIMES: u64 = 4;
+/// How much more memory decoding a file may take than the picture does. Of a progressive JPEG file all
+/// coefficients are kept, two bytes each, of up to four channels; a WebP file is held in planes, and as a
+/// picture with alpha before; a TIFF file in strips beside the picture.
+fn memory_times(format: ImageFormat) -> u64 {
+    match format {
+        ImageFormat::Jpeg | ImageFormat::WebP => 4,
+        ImageFormat::Tiff => 2,
+        _ => 1,
+    }
+}
 
-/// Decodes a PNG, JPEG or PNM file, the right way up: cameras that were turned say so in
+/// Decodes a PNG, JPEG, PNM, WebP, BMP or TIFF file, the right way up: cameras that were turned say so in
 /// the file. JPEG files may lack what webcams leave out: Huffman tables that are the standard's, or
 /// nothing but the mark of their end. `most_memory` bounds what decoding may take, in bytes; 2^30 is
 /// enough for any camera.
@@ -94,8 +101,7 @@ fn decode(file: &[u8], format: ImageFormat, most_memory: u64) -> Result<DynamicI
     let mut reader = ImageReader::with_format(Cursor::new(file), format);
     reader.limits(limits);
     let mut decoder = reader.into_decoder().map_err(undecodable)?;
-    let times = if format == ImageFormat::Jpeg { JPEG_TIMES } else { 1 };
-    let needed = decoder.total_bytes().saturating_mul(times);
+    let needed = decoder.total_bytes().saturating_mul(memory_times(format));
     if needed > most_memory {
         let (width, height) = decoder.dimensions();
         return Err(Error::LargePicture { width, height, needed, most: most_memory });
@@ -173,5 +179,22 @@ mod tests {
         assert!(without.len() < whole.len() - 300);
         let decoded = decode_picture(&without, 1 << 24).expect("a picture");
         assert_eq!(decoded, decode_picture(&whole, 1 << 24).expect("a picture"));
+    }
+
+    #[test]
+    fn all_formats_are_read() {
+        let picture = image::RgbImage::from_fn(9, 7, |x, y| image::Rgb([x as u8, y as u8, 200]));
+        for format in [
+            ImageFormat::Png,
+            ImageFormat::Pnm,
+            ImageFormat::WebP,
+            ImageFormat::Bmp,
+            ImageFormat::Tiff,
+        ] {
+            let mut file = Cursor::new(Vec::new());
+            picture.write_to(&mut file, format).expect("room enough");
+            let decoded = decode_picture(file.get_ref(), 1 << 20).expect("a picture");
+            assert_eq!(decoded.to_rgb8(), picture, "{format:?}");
+        }
     }
 }
