@@ -14,7 +14,7 @@ use phalanx_refine::{Doubt, Refinement};
 use phalanx_segmentation::{Silhouette, SkinModel};
 
 use crate::input::{self, Crop};
-use crate::output;
+use crate::{no_skin, output};
 use phalanx_cli::files::{Output, print};
 
 #[derive(Args)]
@@ -153,9 +153,11 @@ fn of_photographs(
 ) -> Result<Estimate> {
     let skin = Segmenter::Skin(SkinModel::builtin());
     let photographs: Vec<_> = pictures.iter().map(photograph_from).collect();
-    let photographs: Vec<Picture<'_>> =
+    let pictures: Vec<Picture<'_>> =
         photographs.iter().map(|image| Picture::Photograph(image, &skin)).collect();
-    Ok(estimator.estimate(&photographs, workspace)?)
+    estimator
+        .estimate(&pictures, workspace)
+        .map_err(|error| no_skin::explained(error, estimator, &photographs))
 }
 
 /// The pictures side by side with what was seen and estimated. An estimated hand that cannot be

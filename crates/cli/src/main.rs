@@ -7,6 +7,7 @@ mod estimate;
 mod evaluate;
 mod import_calibration;
 mod input;
+mod no_skin;
 mod output;
 mod progress;
 mod recording;

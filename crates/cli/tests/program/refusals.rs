@@ -161,8 +161,14 @@ fn masks_without_a_silhouette() {
 fn photographs_without_a_hand() {
     let desk = Desk::new();
     let meadow = RgbImage::from_fn(320, 240, |x, y| Rgb([40, 120 + (x % 9) as u8, (y % 50) as u8]));
-    desk.save("bad.png", &meadow.into());
-    desk.refuses(&["side.png", "bad.png"], &["camera 'top': empty mask"]);
+    let refuses = |picture: RgbImage, cause: &str| {
+        desk.save("bad.png", &picture.into());
+        desk.refuses(&["side.png", "bad.png"], &["camera 'top': empty mask", cause]);
+    };
+    refuses(meadow, "nothing as large as a hand has the colour of skin");
+    let of = |colour| RgbImage::from_pixel(320, 240, Rgb(colour));
+    refuses(of([120, 124, 120]), "the picture has no colour");
+    refuses(of([70, 90, 140]), "more blue than red");
 }
 
 #[test]

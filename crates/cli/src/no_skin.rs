@@ -1,0 +1,43 @@
+//! Why no skin is found in a photograph.
+
+use image::{Rgb, RgbImage};
+use phalanx::{Error, Estimator};
+use phalanx_segmentation::Error as Reason;
+
+/// The greatest difference between the channels of a pixel without colour, levels: what a JPEG file's
+/// rounding makes of a grey one.
+const GREY: u8 = 8;
+
+/// The error of an estimate from photographs. Where no skin was found, it says what the photograph is like.
+pub(crate) fn explained(
+    error: Error,
+    estimator: &Estimator,
+    photographs: &[RgbImage],
+) -> anyhow::Error {
+    let Error::Silhouette { camera, reason: Reason::EmptyMask { .. } } = &error else {
+        return error.into();
+    };
+    let mut views = estimator.rig().cameras.iter().zip(photographs);
+    match views.find(|(seeing, _)| seeing.name == *camera) {
+        Some((_, photograph)) => anyhow::anyhow!("{error}; {}", cause(photograph)),
+        None => error.into(),
+    }
+}
+
+fn cause(photograph: &RgbImage) -> &'static str {
+    let is_grey = |Rgb([red, green, blue]): &Rgb<u8>| {
+        red.max(green).max(blue) - red.min(green).min(blue) <= GREY
+    };
+    let sum =
+        |channel: usize| photograph.pixels().map(|pixel| u64::from(pixel[channel])).sum::<u64>();
+    if photograph.pixels().all(is_grey) {
+        "the picture has no colour, and skin is found by its colour: give colour photographs, or masks \
+         with --mask"
+    } else if sum(2) > sum(0) {
+        "there is more blue than red in the picture, so the light may be too cold for skin to be found by \
+         its colour: set the camera's white balance, or give masks with --mask"
+    } else {
+        "nothing as large as a hand has the colour of skin: look at the light and the white balance, or \
+         give masks with --mask"
+    }
+}
