@@ -116,6 +116,8 @@ mod tests {
     use super::*;
 
     proptest! {
+        #![proptest_config(crate::property::cases(256))]
+
         #[test]
         fn a_hand_stays_where_it_is_in_another_frame(
             numbers in prop::array::uniform28(-0.7..0.7_f64),

@@ -205,7 +205,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { failure_persistence: None, cases: 64, ..ProptestConfig::default() })]
+        #![proptest_config(crate::property::cases(64))]
 
         #[test]
         fn no_seed_draws_the_scenes_of_another_nor_fresh_ones(
