@@ -41,7 +41,10 @@ fn examples(readme: &str) -> Vec<Example> {
         let Some(attributes) = line.strip_prefix("```rust") else { continue };
         let mut code = String::new();
         for line in lines.by_ref().take_while(|line| *line != "```") {
-            code += line.strip_prefix("# ").unwrap_or(line);
+            code += match line {
+                "#" => "",
+                _ => line.strip_prefix("# ").unwrap_or(line),
+            };
             code += "\n";
         }
         found.push(Example { code, only_compiles: attributes.contains("no_run") });
