@@ -1,34 +1,25 @@
 #![doc = include_str!("../README.md")]
 
-mod agreement;
-mod border_noise;
-mod calibration;
-mod doubt;
+mod bundle;
 mod error;
-mod evidence;
-mod fit;
-mod hull;
-mod posterior;
-mod prior;
-mod problem;
+mod geometry;
+mod observation;
+mod pose_fit;
+mod posture_search;
+mod priors;
 #[cfg(test)]
 #[path = "../tests/property/mod.rs"]
 mod property;
-mod proportions;
-mod refinement;
-mod screen;
-mod search;
-mod system;
-mod touching;
-mod view;
+mod solver;
 
-pub use agreement::Agreement;
-pub use border_noise::{BorderNoise, BorderResiduals};
-pub use calibration::{Calibrated, Calibration, CalibrationFrame};
-pub use doubt::{CameraDoubt, HandDoubt, Moves};
+pub use bundle::{Calibrated, Calibration, CalibrationFrame};
 pub use error::{Error, Result};
-pub use evidence::Evidence;
-pub use posterior::Posterior;
-pub use prior::PosePrior;
-pub use refinement::{Doubt, Level, Refined, Refinement};
-pub use screen::Screened;
+pub use observation::silhouette::Evidence;
+pub use pose_fit::agreement::Agreement;
+pub use pose_fit::border_noise::{BorderNoise, BorderResiduals};
+pub use pose_fit::fit::Refined;
+pub use pose_fit::posterior::Posterior;
+pub use pose_fit::screening::Screened;
+pub use pose_fit::settings::{Level, Refinement};
+pub use priors::nuisance::{CameraDoubt, Doubt, HandDoubt, Moves};
+pub use priors::pose::PosePrior;

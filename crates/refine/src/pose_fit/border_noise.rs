@@ -3,9 +3,9 @@
 use glam::{DAffine3, DVec2};
 use phalanx_hand::{HandShape, Pose};
 
-use crate::problem::place_scale;
-use crate::view::View;
-use crate::{Evidence, Result};
+use crate::error::Result;
+use crate::geometry::correspondence::View;
+use crate::observation::silhouette::Evidence;
 
 /// How far a view's observed border is from the border of a posed hand, place by place.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +25,7 @@ impl BorderResiduals {
         let mut view = View::new(evidence)?;
         let posed = hand.pose(pose, rest);
         view.compare(&posed.primitives, evidence, 1)?;
-        let scale = place_scale(evidence, rest.transform_point3(pose.translation()));
+        let scale = evidence.pixels_per_mm(rest.transform_point3(pose.translation()));
         let seen = view.matches.iter().zip(evidence.cracks());
         let (residuals, places) =
             seen.map(|(found, &place)| (scale * found.passing.distance, place)).unzip();

@@ -4,7 +4,7 @@ use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, Side};
 use phalanx_hand::{Digit, Dof, Pose, abduction_limit};
 
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// A Gaussian over those numbers of a pose that are not known; the others have the mean's value.
 #[derive(Debug, Clone, PartialEq)]

@@ -32,6 +32,33 @@ pub enum Moves {
     EveryFrame,
 }
 
+/// When a hand and cameras are not believed to be as given, and how far off they may be.
+///
+/// Where the pose alone explains a border no better than to `beyond`, the proportions of the hand
+/// and the places of the cameras are fitted with it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Doubt {
+    /// Root of the mean (robust) squared distance of the borders, px.
+    pub beyond: f64,
+    /// The hand.
+    pub hand: Option<HandDoubt>,
+    /// The cameras.
+    pub cameras: Option<CameraDoubt>,
+}
+
+impl Default for Doubt {
+    /// People's hands differ from the mean hand by some per cent, careful calibrations from the
+    /// truth by a degree or two.
+    fn default() -> Self {
+        let turn = 1.2_f64.to_radians();
+        Self {
+            beyond: 0.38,
+            hand: Some(HandDoubt { size: 0.02, each: 0.06 }),
+            cameras: Some(CameraDoubt { turn, shift: 0.5, moves: Moves::EveryFrame }),
+        }
+    }
+}
+
 /// A camera that stands elsewhere sees what it would see, where it should stand, of a hand that is
 /// moved the other way: this is how the hand seems moved.
 #[derive(Debug, Clone, Copy, PartialEq)]

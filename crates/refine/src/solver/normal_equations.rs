@@ -4,8 +4,8 @@ use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, MatRef, Side};
 use phalanx_hand::Pose;
 
-use crate::PosePrior;
-use crate::problem::Known;
+use crate::priors::gaussian::Known;
+use crate::priors::pose::PosePrior;
 
 /// A sparse row of the Jacobian: which unknown, and the slope.
 pub(crate) type Row = Vec<(usize, f64)>;

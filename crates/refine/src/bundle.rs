@@ -5,13 +5,15 @@ use phalanx_camera::Camera;
 use phalanx_hand::{HandShape, Pose};
 use rayon::prelude::*;
 
-use crate::doubt::{CameraDoubt, HandDoubt};
-use crate::fit::{State, overlaps};
-use crate::problem::{Frame, Freedom, Problem};
-use crate::refinement::ANY_ENERGY;
-use crate::system::shared_covariance;
-use crate::view::View;
-use crate::{Doubt, Error, Evidence, PosePrior, Refinement, Result};
+use crate::error::{Error, Result};
+use crate::geometry::correspondence::View;
+use crate::observation::silhouette::Evidence;
+use crate::pose_fit::settings::Refinement;
+use crate::priors::nuisance::{CameraDoubt, Doubt, HandDoubt};
+use crate::priors::pose::PosePrior;
+use crate::solver::levenberg_marquardt::{ANY_ENERGY, State, overlaps};
+use crate::solver::normal_equations::shared_covariance;
+use crate::solver::problem::{Frame, Freedom, Problem};
 
 /// How a hand is fitted to several frames of it.
 ///

@@ -3,11 +3,13 @@
 use glam::DAffine3;
 use phalanx_hand::{HandShape, Pose};
 
-use crate::fit::{State, Stop, descend};
-use crate::problem::{Frame, Freedom, Problem};
-use crate::refinement::ANY_ENERGY;
-use crate::view::View;
-use crate::{Error, Evidence, Level, PosePrior, Refinement, Result};
+use crate::error::{Error, Result};
+use crate::geometry::correspondence::View;
+use crate::observation::silhouette::Evidence;
+use crate::pose_fit::settings::{Level, Refinement};
+use crate::priors::pose::PosePrior;
+use crate::solver::levenberg_marquardt::{ANY_ENERGY, State, Stop, descend};
+use crate::solver::problem::{Frame, Freedom, Problem};
 
 /// A start after a few coarse steps.
 #[derive(Debug, Clone, PartialEq)]

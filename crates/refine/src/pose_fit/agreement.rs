@@ -3,9 +3,10 @@
 use glam::DAffine3;
 use phalanx_hand::{HandShape, Pose};
 
-use crate::problem::place_scale;
-use crate::view::View;
-use crate::{Evidence, Refinement, Result};
+use crate::error::Result;
+use crate::geometry::correspondence::View;
+use crate::observation::silhouette::Evidence;
+use crate::pose_fit::settings::Refinement;
 
 /// How well what one camera saw agrees with a posed hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,7 +33,7 @@ impl Refinement {
         self.check()?;
         let mut view = View::new(evidence)?;
         view.compare(&hand.pose(pose, rest).primitives, evidence, 1)?;
-        let scale = place_scale(evidence, rest.transform_point3(pose.translation()));
+        let scale = evidence.pixels_per_mm(rest.transform_point3(pose.translation()));
         let distances: Vec<f64> =
             view.matches.iter().map(|found| scale * found.passing.distance).collect();
         let measure = self.finest();

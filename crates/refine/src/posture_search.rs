@@ -4,9 +4,11 @@ use glam::DAffine3;
 use image::GrayImage;
 use phalanx_hand::{Digit, Dof, HandShape, Link, Pose, PosedHand, Primitive};
 
-use crate::touching;
-use crate::view::View;
-use crate::{Error, Evidence, PosePrior, Result};
+use crate::error::{Error, Result};
+use crate::geometry::correspondence::View;
+use crate::geometry::self_collision;
+use crate::observation::silhouette::Evidence;
+use crate::priors::pose::PosePrior;
 
 /// Places in the range of each of a digit's first two flexions that are tried.
 const PLACES: usize = 6;
@@ -242,7 +244,7 @@ impl Search<'_> {
     ) -> Result<Option<f64>> {
         let posed = self.hand.pose(pose, self.rest);
         let own = solids(&posed, &background.digits, Part::Digits);
-        let mut cost = self.prior.energy(pose) + touching::energy(&posed);
+        let mut cost = self.prior.energy(pose) + self_collision::energy(&posed);
         for (v, other) in background.drawn.iter().enumerate() {
             if cost >= limit {
                 break;

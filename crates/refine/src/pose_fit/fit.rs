@@ -1,87 +1,17 @@
-//! One frame: a pose fitted to what cameras saw.
+//! A pose fitted to what cameras saw, from coarse to fine.
 
 use glam::DAffine3;
 use phalanx_hand::{HandShape, Pose};
 
-use crate::doubt::{CameraDoubt, HandDoubt, Moves};
-use crate::fit::{Outcome, State, Stop, descend, overlaps};
-use crate::problem::{Frame, Freedom, Measure, Problem};
-use crate::search::Search;
-use crate::system::covariance;
-use crate::view::View;
-use crate::{Error, Evidence, PosePrior, Result};
-
-/// How poses are refined.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Refinement {
-    /// From coarse to fine; at the last every place along the border is looked at.
-    pub levels: Vec<Level>,
-    /// Standard deviation of a border's place, px; the levels' reach goes with it
-    /// ([`of_noise`](Self::of_noise)).
-    pub noise: f64,
-    /// Standard deviation of what segmentation adds to or takes from a whole border, px.
-    pub margin: f64,
-    /// How often digits are tried in other postures again where borders stay further apart than
-    /// `content`.
-    pub retries: usize,
-    /// Root of the mean (robust) squared distance of the borders that needs no second try, px.
-    pub content: f64,
-    /// The share of its border from which on a view that a pose leaves unexplained counts less, so that one
-    /// that shows something else cannot drag the pose along; `None` where all views are believed.
-    pub disagreement: Option<f64>,
-    /// What may be otherwise than given; `None` where hand and cameras are certain.
-    pub doubt: Option<Doubt>,
-}
-
-/// When a hand and cameras are not believed to be as given, and how far off they may be.
-///
-/// Where the pose alone explains a border no better than to `beyond`, the proportions of the hand
-/// and the places of the cameras are fitted with it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Doubt {
-    /// Root of the mean (robust) squared distance of the borders, px.
-    pub beyond: f64,
-    /// The hand.
-    pub hand: Option<HandDoubt>,
-    /// The cameras.
-    pub cameras: Option<CameraDoubt>,
-}
-
-/// What is tried in other postures.
-#[derive(Clone, Copy)]
-enum Tries {
-    Digits,
-    Pairs,
-}
-
-/// A start of at most so many times the energy that was reached from it is good in itself.
-const GOOD: f64 = 2.0;
-
-/// The hope of a fit that is worth its steps whatever energy they lead to.
-pub(crate) const ANY_ENERGY: f64 = f64::INFINITY;
-
-/// Share of the energy that a step must win to be followed by another.
-const GAIN: f64 = 1e-3;
-
-/// Share of a start's energy that must be won for the start to be left: some directions change the
-/// energy so little that a pose would drift along them whenever it is refined again. Of what well-fitted
-/// poses come to it is about a unit of the log-likelihood.
-const WORTH_LEAVING: f64 = 0.005;
-
-/// Share of a fit's energy that a search of postures must win, by its own count of pixels, for the fit
-/// to be repeated from what it found.
-const WORTH_FITTING: f64 = 0.02;
-
-/// A level of detail.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Level {
-    /// How far borders may be apart and still count, px.
-    pub reach: f64,
-    /// Of so many places along the border one is looked at.
-    pub every: usize,
-    /// Steps at most.
-    pub steps: usize,
-}
+use crate::error::{Error, Result};
+use crate::geometry::correspondence::View;
+use crate::observation::silhouette::Evidence;
+use crate::pose_fit::settings::Refinement;
+use crate::posture_search::Search;
+use crate::priors::pose::PosePrior;
+use crate::solver::levenberg_marquardt::{ANY_ENERGY, Outcome, State, Stop, descend, overlaps};
+use crate::solver::normal_equations::covariance;
+use crate::solver::problem::{Frame, Freedom, Problem};
 
 /// A refined pose.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,62 +39,26 @@ pub struct Refined {
     pub steps: usize,
 }
 
-impl Level {
-    fn stop(&self) -> Stop {
-        Stop { steps: self.steps, gain: GAIN, hope: ANY_ENERGY }
-    }
+/// What is tried in other postures.
+#[derive(Clone, Copy)]
+enum Tries {
+    Digits,
+    Pairs,
 }
 
-impl Default for Refinement {
-    fn default() -> Self {
-        let level = |reach, every, steps| Level { reach, every, steps };
-        Self {
-            levels: vec![level(12.0, 4, 6), level(3.0, 2, 6), level(1.0, 1, 6)],
-            noise: 0.5,
-            margin: 1.0,
-            retries: 1,
-            content: 0.29,
-            disagreement: None,
-            doubt: None,
-        }
-    }
-}
+/// A start of at most so many times the energy that was reached from it is good in itself.
+const GOOD: f64 = 2.0;
 
-impl Default for Doubt {
-    /// People's hands differ from the mean hand by some per cent, careful calibrations from the
-    /// truth by a degree or two.
-    fn default() -> Self {
-        let turn = 1.2_f64.to_radians();
-        Self {
-            beyond: 0.38,
-            hand: Some(HandDoubt { size: 0.02, each: 0.06 }),
-            cameras: Some(CameraDoubt { turn, shift: 0.5, moves: Moves::EveryFrame }),
-        }
-    }
-}
+/// Share of a start's energy that must be won for the start to be left: some directions change the
+/// energy so little that a pose would drift along them whenever it is refined again. Of what well-fitted
+/// poses come to it is about a unit of the log-likelihood.
+const WORTH_LEAVING: f64 = 0.005;
+
+/// Share of a fit's energy that a search of postures must win, by its own count of pixels, for the fit
+/// to be repeated from what it found.
+const WORTH_FITTING: f64 = 0.02;
 
 impl Refinement {
-    /// The default where borders are known to a standard deviation of `noise` px: as much further apart
-    /// they still count, but nowhere further than the coarsest level lets them. Borders that no longer
-    /// count within what they are known to let a digit stretch out beyond a silhouette at no cost.
-    ///
-    /// ```
-    /// use phalanx_refine::Refinement;
-    ///
-    /// assert_eq!(Refinement::of_noise(0.5), Refinement::default());
-    /// let levels = Refinement::of_noise(2.0).levels;
-    /// let reaches: Vec<f64> = levels.iter().map(|level| level.reach).collect();
-    /// assert_eq!(reaches, [12.0, 12.0, 4.0]);
-    /// ```
-    #[must_use]
-    pub fn of_noise(noise: f64) -> Self {
-        let Self { levels, noise: usual, .. } = Self::default();
-        let farthest = levels.iter().map(|level| level.reach).fold(0.0, f64::max);
-        let reach = |reach: f64| (noise / usual * reach).min(farthest);
-        let level = |level: Level| Level { reach: reach(level.reach), ..level };
-        Self { noise, levels: levels.into_iter().map(level).collect(), ..Self::default() }
-    }
-
     /// Fits the pose of a hand, whose frame at rest is mapped to the world by `rest`, to what
     /// cameras saw, from `start`. Those numbers that the prior does not leave open keep their
     /// values.
@@ -337,49 +231,6 @@ impl Refinement {
         let mut outcome = descend(problem, state, self.measure(level), stop, views)?;
         outcome.steps += steps;
         Ok(outcome)
-    }
-
-    /// The measure of the last level.
-    pub(crate) fn finest(&self) -> Measure {
-        self.measure(self.levels.last().expect("checked"))
-    }
-
-    pub(crate) fn measure(&self, level: &Level) -> Measure {
-        Measure {
-            reach: level.reach,
-            noise: self.noise,
-            margin: self.margin,
-            every: level.every,
-            disagreement: self.disagreement.unwrap_or(f64::INFINITY),
-        }
-    }
-
-    pub(crate) fn check(&self) -> Result<()> {
-        let wrong = |name, value, allowed| Err(Error::Parameter { name, value, allowed });
-        if !(self.noise > 0.0 && self.noise.is_finite()) {
-            return wrong("noise", self.noise, "positive");
-        }
-        if !(self.margin > 0.0 && self.margin.is_finite()) {
-            return wrong("margin", self.margin, "positive");
-        }
-        if let Some(value) = self.disagreement.filter(|value| value.is_nan() || *value <= 0.0) {
-            return wrong("disagreement", value, "positive");
-        }
-        for level in &self.levels {
-            if !(level.reach > 0.0 && level.reach.is_finite()) {
-                return wrong("reach", level.reach, "positive");
-            }
-            if level.every == 0 {
-                return wrong("every", 0.0, "at least 1");
-            }
-        }
-        match self.levels.last() {
-            None => wrong("number of levels", 0.0, "at least 1"),
-            Some(level) if level.every != 1 => {
-                wrong("every of the last level", level.every as f64, "1")
-            }
-            Some(_) => Ok(()),
-        }
     }
 }
 

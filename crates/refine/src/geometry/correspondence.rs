@@ -5,9 +5,10 @@ use image::GrayImage;
 use phalanx_hand::Primitive;
 use phalanx_render::Renderer;
 
-use crate::evidence::find_cracks;
-use crate::hull::{Bound, Hull, Passing};
-use crate::{Error, Evidence, Result};
+use crate::error::{Error, Result};
+use crate::geometry::sphere_hull::{Bound, Hull, Passing};
+use crate::observation::boundary::find_cracks;
+use crate::observation::silhouette::Evidence;
 
 /// A ray of the observed border and the solid that should touch it.
 #[derive(Debug, Clone, Copy)]

@@ -5,11 +5,16 @@ use faer::{Mat, Side};
 use glam::{DAffine3, DVec3};
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
 
-use crate::doubt::HandDoubt;
-use crate::problem::{Frame, Freedom, Measure, Problem};
-use crate::proportions::Proportions;
-use crate::view::View;
-use crate::{Error, Evidence, PosePrior, Refinement, Result};
+use crate::error::{Error, Result};
+use crate::geometry::correspondence::View;
+use crate::geometry::shape_parameters::Proportions;
+use crate::observation::silhouette::Evidence;
+use crate::pose_fit::settings::Refinement;
+use crate::priors::nuisance::HandDoubt;
+use crate::priors::pose::PosePrior;
+use crate::solver::loss::Measure;
+use crate::solver::problem::{Frame, Freedom, Problem};
+use crate::solver::residuals::linearise;
 
 /// How well a fitted hand is known.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,7 +63,7 @@ impl Refinement {
         let mut views = evidence.iter().map(View::new).collect::<Result<Vec<_>>>()?;
         // Views that were fitted with are believed.
         let measure = Measure { disagreement: f64::INFINITY, ..self.finest() };
-        let system = problem.look(0, &moment, &shared, measure, &mut views)?;
+        let system = linearise(&problem, 0, &moment, &shared, measure, &mut views)?;
         let mut hessian = system.whole_hessian();
         let own = hessian.nrows() - count;
         for (k, std) in hand_std.iter().enumerate() {

@@ -2,11 +2,14 @@
 
 use rayon::prelude::*;
 
-use crate::doubt::Correction;
-use crate::problem::{Frame, Known, Measure, Moment, Problem, Shared};
-use crate::system::{self, FrameSystem, Step};
-use crate::view::View;
-use crate::{Error, Result};
+use crate::error::{Error, Result};
+use crate::geometry::correspondence::View;
+use crate::priors::gaussian::Known;
+use crate::priors::nuisance::Correction;
+use crate::solver::loss::Measure;
+use crate::solver::normal_equations::{FrameSystem, Step, solve};
+use crate::solver::problem::{Frame, Moment, Problem, Shared};
+use crate::solver::residuals::linearise;
 
 /// Where a fit is.
 #[derive(Debug, Clone)]
@@ -66,6 +69,9 @@ pub(crate) struct Stop {
     pub(crate) hope: f64,
 }
 
+/// The hope of a fit that is worth its steps whatever energy they lead to.
+pub(crate) const ANY_ENERGY: f64 = f64::INFINITY;
+
 /// Descends from a state until steps win no more.
 pub(crate) fn descend(
     problem: &Problem<'_>,
@@ -79,7 +85,7 @@ pub(crate) fn descend(
     let (mut damping, mut converged, mut steps) = (1e-3, false, 0);
     while steps < stop.steps && !converged {
         steps += 1;
-        let Some(step) = system::solve(&look.frames, &look.shared_prior, damping) else {
+        let Some(step) = solve(&look.frames, &look.shared_prior, damping) else {
             damping = f64::max(10.0 * damping, 1e-3);
             continue;
         };
@@ -114,7 +120,9 @@ fn look_at(
     let (mut energy, shared_prior) = problem.shared_prior(&state.shared);
     let looks = state.moments.par_iter().zip(views).enumerate();
     let frames: Vec<FrameSystem> = looks
-        .map(|(frame, (moment, views))| problem.look(frame, moment, &state.shared, measure, views))
+        .map(|(frame, (moment, views))| {
+            linearise(problem, frame, moment, &state.shared, measure, views)
+        })
         .collect::<Result<_>>()?;
     for frame in &frames {
         energy += frame.energy;

@@ -1,0 +1,6 @@
+//! A posed hand against rays: the solids, what they pass, and what of them is in the same place.
+
+pub(crate) mod correspondence;
+pub(crate) mod self_collision;
+pub(crate) mod shape_parameters;
+pub(crate) mod sphere_hull;

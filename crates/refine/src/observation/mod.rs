@@ -1,0 +1,7 @@
+//! What a camera saw: a silhouette, its border, and the nearest place of the border to each pixel.
+
+pub(crate) mod boundary;
+pub(crate) mod distance_transform;
+pub(crate) mod silhouette;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,56 @@
+//! Borders found fast against borders found slowly.
+
+use glam::DVec2;
+use image::GrayImage;
+use proptest::prelude::*;
+
+use crate::observation::boundary::find_cracks;
+use crate::observation::distance_transform::nearest_cracks;
+
+/// Masks of few and of many changes.
+fn masks() -> impl Strategy<Value = GrayImage> {
+    (1_u32..50, 1_u32..20, 0.0..1.0_f64).prop_flat_map(|(width, height, share)| {
+        let pixel = prop::bool::weighted(share).prop_map(|hand| if hand { 200 } else { 100 });
+        prop::collection::vec(pixel, (width * height) as usize)
+            .prop_map(move |pixels| GrayImage::from_raw(width, height, pixels).unwrap())
+    })
+}
+
+/// By looking at every pair of pixels.
+fn slow_cracks(mask: &GrayImage) -> Vec<DVec2> {
+    let is_hand = |x: u32, y: u32| mask.get_pixel(x, y).0[0] > 127;
+    let mut cracks = Vec::new();
+    for y in 0..mask.height() {
+        let across = (1..mask.width()).filter(|&x| is_hand(x - 1, y) != is_hand(x, y));
+        cracks.extend(across.map(|x| DVec2::new(f64::from(x), f64::from(y) + 0.5)));
+        let down = (0..mask.width()).filter(|&x| y > 0 && is_hand(x, y - 1) != is_hand(x, y));
+        cracks.extend(down.map(|x| DVec2::new(f64::from(x) + 0.5, f64::from(y))));
+    }
+    cracks
+}
+
+proptest! {
+    #![proptest_config(crate::property::cases(256))]
+
+    #[test]
+    fn cracks_are_where_neighbours_differ(mask in masks()) {
+        let mut cracks = Vec::new();
+        find_cracks(&mask, &mut cracks);
+        prop_assert_eq!(cracks, slow_cracks(&mask));
+    }
+
+    /// The sweeps may miss the nearest by a little.
+    #[test]
+    fn the_nearest_crack_is_nearest(mask in masks()) {
+        let mut cracks = Vec::new();
+        find_cracks(&mask, &mut cracks);
+        prop_assume!(!cracks.is_empty());
+        let nearest = nearest_cracks(&cracks, mask.dimensions());
+        for (x, y, _) in mask.enumerate_pixels() {
+            let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+            let found = cracks[nearest[(y * mask.width() + x) as usize] as usize];
+            let least = cracks.iter().map(|crack| crack.distance(middle)).fold(f64::MAX, f64::min);
+            prop_assert!(found.distance(middle) <= least + 0.5, "{found} from {middle}");
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! One frame: a pose fitted to what cameras saw, and what can be said of a fit.
+
+pub(crate) mod agreement;
+pub(crate) mod border_noise;
+pub(crate) mod fit;
+pub(crate) mod posterior;
+pub(crate) mod screening;
+pub(crate) mod settings;

@@ -1,0 +1,196 @@
+//! The slopes of residuals by the pose, the hand's shape and the cameras' places.
+
+use std::borrow::Cow;
+
+use glam::{DAffine3, DMat3, DVec3};
+use phalanx_hand::{Dof, Link, Motions, PosedHand, Primitive};
+
+use crate::geometry::correspondence::Match;
+use crate::geometry::self_collision::Touch;
+use crate::geometry::shape_parameters::Slope;
+use crate::observation::silhouette::Evidence;
+use crate::priors::nuisance::Correction;
+use crate::solver::normal_equations::Row;
+
+/// A contact between a ray and a posed hand, in the world.
+pub(crate) struct Contact<'a> {
+    links: &'a [Link; 3],
+    /// The balls' weights in the place that the ray passes.
+    weights: [f64; 3],
+    /// What moves there, with weights: the balls' centres, or one point of a squashed solid.
+    points: [(f64, DVec3); 3],
+    /// ∂residual of a shift, px/mm.
+    normal: DVec3,
+}
+
+/// Where a camera stands.
+pub(crate) struct Place<'a> {
+    evidence: &'a Evidence,
+    /// The motion that its correction gives the hand.
+    motion: Option<DAffine3>,
+    /// What the motion turns about.
+    pivot: DVec3,
+    /// Pixels that a millimetre is wide there, over the border's grain.
+    pub(crate) scale: f64,
+    /// From the camera's directions to the world's, as they are before the motion.
+    back: DMat3,
+}
+
+impl<'a> Place<'a> {
+    pub(crate) fn new(
+        evidence: &'a Evidence,
+        correction: Option<&Correction>,
+        pivot: DVec3,
+    ) -> Self {
+        let camera = evidence.camera();
+        let motion = correction.map(|correction| correction.motion(pivot));
+        let turned = motion.map_or(DMat3::IDENTITY, |motion| motion.matrix3.transpose());
+        Self {
+            evidence,
+            motion,
+            pivot,
+            scale: evidence.pixels_per_mm(pivot),
+            back: turned * camera.extrinsics.rotation.transpose(),
+        }
+    }
+
+    /// The solids as they seem to stand.
+    pub(crate) fn seen<'s>(&self, solids: &'s [Primitive]) -> Cow<'s, [Primitive]> {
+        match self.motion {
+            Some(motion) => solids.iter().map(|solid| solid.moved(&motion)).collect(),
+            None => Cow::Borrowed(solids),
+        }
+    }
+
+    pub(crate) fn contact<'p>(&self, found: &Match, posed: &'p PosedHand) -> Contact<'p> {
+        let passing = &found.passing;
+        let balls = posed.primitives[found.solid].balls();
+        let points = match passing.point {
+            Some(point) => {
+                let world = self.evidence.camera().extrinsics.to_world(point);
+                let motion = self.motion.unwrap_or(DAffine3::IDENTITY);
+                let nothing = (0.0, DVec3::ZERO);
+                [(1.0, motion.inverse().transform_point3(world)), nothing, nothing]
+            }
+            None => [0, 1, 2].map(|k| (passing.weights[k], balls[k.min(balls.len() - 1)].center)),
+        };
+        Contact {
+            links: &posed.links[found.solid],
+            weights: passing.weights,
+            points,
+            normal: self.back * passing.normal * self.scale,
+        }
+    }
+
+    /// The slopes of a correction, whose numbers begin at `first`.
+    pub(crate) fn row(
+        &self,
+        contact: &Contact<'_>,
+        first: usize,
+    ) -> impl Iterator<Item = (usize, f64)> {
+        let motion = self.motion.unwrap_or(DAffine3::IDENTITY);
+        let middle: DVec3 = contact.points.iter().map(|(weight, point)| *point * *weight).sum();
+        let arm = motion.transform_point3(middle) - self.pivot;
+        let normal = motion.transform_vector3(contact.normal);
+        let slopes = [arm.cross(normal).to_array(), normal.to_array()];
+        (0..Correction::NUMBERS).map(move |k| (first + k, slopes[k / 3][k % 3]))
+    }
+}
+
+/// Memory for the rows of one residual.
+pub(crate) struct Rows {
+    /// Where each number of a pose is among those that are fitted.
+    slots: [Option<usize>; Dof::COUNT],
+    pub(crate) own: Row,
+    pub(crate) shared: Row,
+}
+
+impl Rows {
+    /// For poses of which these numbers are fitted.
+    pub(crate) fn new(dofs: &[Dof]) -> Self {
+        let mut slots = [None; Dof::COUNT];
+        for (slot, dof) in dofs.iter().enumerate() {
+            slots[dof.index()] = Some(slot);
+        }
+        Self { slots, own: Row::new(), shared: Row::new() }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.own.clear();
+        self.shared.clear();
+    }
+
+    pub(crate) fn of_pose(&mut self, contact: &Contact<'_>, motions: &Motions) {
+        let Contact { links, points, normal, .. } = contact;
+        let mut k = 0;
+        while k < 3 {
+            // Balls of one link move as one.
+            let (mut weight, mut moment) = (0.0, DVec3::ZERO);
+            let link = links[k];
+            while k < 3 && links[k] == link {
+                weight += points[k].0;
+                moment += points[k].1 * points[k].0;
+                k += 1;
+            }
+            if weight == 0.0 {
+                continue;
+            }
+            for dof in link.dofs() {
+                if let Some(slot) = self.slots[dof.index()] {
+                    let slope = weight * normal.dot(motions.of(dof).velocity(moment / weight));
+                    match self.own.iter_mut().find(|(other, _)| *other == slot) {
+                        Some((_, sum)) => *sum += slope,
+                        None => self.own.push((slot, slope)),
+                    }
+                }
+            }
+        }
+        self.own.sort_unstable_by_key(|&(slot, _)| slot);
+    }
+
+    /// The slopes of how deep two digits are in each other.
+    pub(crate) fn of_touch(
+        &mut self,
+        touch: &Touch,
+        posed: &PosedHand,
+        motions: &Motions,
+        slopes: Option<&[[Vec<Slope>; 3]]>,
+    ) {
+        self.clear();
+        for ((&solid, &place), away) in touch.solids.iter().zip(&touch.places).zip([-1.0, 1.0]) {
+            let centers = [0, 1].map(|k| posed.primitives[solid].balls()[k].center);
+            let weights = [1.0 - place, place, 0.0];
+            let contact = Contact {
+                links: &posed.links[solid],
+                weights,
+                points: [(1.0 - place, centers[0]), (place, centers[1]), (0.0, DVec3::ZERO)],
+                normal: touch.apart * away,
+            };
+            self.of_pose(&contact, motions);
+            if let Some(slopes) = slopes {
+                self.of_proportions(&contact, &slopes[solid], 0.0);
+                // It is as thick as on average.
+                let thick = Contact { weights: [0.5, 0.5, 0.0], normal: DVec3::ZERO, ..contact };
+                self.of_proportions(&thick, &slopes[solid], -1.0);
+            }
+        }
+    }
+
+    pub(crate) fn of_proportions(
+        &mut self,
+        contact: &Contact<'_>,
+        slopes: &[Vec<Slope>; 3],
+        scale: f64,
+    ) {
+        for (weight, slopes) in contact.weights.iter().zip(slopes) {
+            for slope in slopes.iter().filter(|_| *weight > 0.0) {
+                let moved = contact.normal.dot(slope.center) - scale * slope.radius;
+                match self.shared.iter_mut().find(|(other, _)| *other == slope.number) {
+                    Some((_, sum)) => *sum += weight * moved,
+                    None => self.shared.push((slope.number, weight * moved)),
+                }
+            }
+        }
+        self.shared.sort_unstable_by_key(|&(number, _)| number);
+    }
+}

@@ -1,0 +1,8 @@
+//! The energy of a fit, its normal equations, and the descent.
+
+pub(crate) mod jacobian;
+pub(crate) mod levenberg_marquardt;
+pub(crate) mod loss;
+pub(crate) mod normal_equations;
+pub(crate) mod problem;
+pub(crate) mod residuals;
