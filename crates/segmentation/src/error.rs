@@ -1,6 +1,6 @@
 //! What can go wrong, by name.
 
-use crate::skin::Label;
+use crate::masking::label::Label;
 
 /// Result of this crate's fallible functions.
 pub type Result<T> = std::result::Result<T, Error>;

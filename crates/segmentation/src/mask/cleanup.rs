@@ -3,9 +3,9 @@
 use image::GrayImage;
 use serde::{Deserialize, Serialize};
 
-use crate::components::{Class, Components};
 use crate::error::{Error, Result};
-use crate::majority::Majority;
+use crate::mask::components::{Class, Components};
+use crate::mask::majority::Majority;
 
 /// How a mask is cleaned.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

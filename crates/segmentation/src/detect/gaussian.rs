@@ -1,6 +1,6 @@
 //! A normal distribution of a few numbers.
 
-use crate::sections::FEATURES;
+use crate::detect::cross_sections::FEATURES;
 
 /// Numbers that describe a section.
 pub(crate) type Features = [f64; FEATURES];

@@ -2,8 +2,8 @@
 
 use image::GrayImage;
 
-use crate::contour::Contour;
 use crate::error::{Error, Result};
+use crate::silhouette::contour::Contour;
 
 /// Standard deviations along the principal axes of a silhouette with two ends differ by this.
 const LEAST_ELONGATION: f64 = 1.15;

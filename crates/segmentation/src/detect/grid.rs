@@ -1,6 +1,6 @@
 //! One component of a mask on a grid that is coarse enough to be walked quickly.
 
-use crate::components::Span;
+use crate::mask::components::Span;
 
 /// Cells of background around the component, so that no step leaves the grid.
 const MARGIN: usize = 2;

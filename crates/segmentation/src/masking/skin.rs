@@ -3,17 +3,9 @@
 use image::{GrayImage, RgbImage};
 use serde::{Deserialize, Serialize};
 
-use crate::chroma::chroma;
 use crate::error::{Error, Result};
-
-/// The class of a training pixel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Label {
-    /// Bare skin.
-    Skin,
-    /// Anything else.
-    NonSkin,
-}
+use crate::masking::chroma::chroma;
+use crate::masking::label::Label;
 
 /// How histograms become a decision.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -168,7 +160,8 @@ impl SkinModel {
     /// # Panics
     /// Never: the bytes are part of the crate and a test reads them.
     pub fn builtin() -> Self {
-        Self::from_bytes(include_bytes!("../models/skin.txt")).expect("the shipped model is valid")
+        Self::from_bytes(include_bytes!("../../models/skin.txt"))
+            .expect("the shipped model is valid")
     }
 
     /// Builds the model from histograms. Each class needs a pixel.

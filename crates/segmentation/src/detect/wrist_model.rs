@@ -3,17 +3,11 @@
 use std::fmt::Write;
 use std::sync::LazyLock;
 
-use image::GrayImage;
-
+use crate::detect::cross_sections::FEATURES;
+use crate::detect::gaussian::{Features, Gaussian};
 use crate::error::{Error, Result};
-use crate::gaussian::{Features, Gaussian, Moments};
-use crate::hand_finder::HandFinder;
-use crate::sections::FEATURES;
 
 const MAGIC: &str = "phalanx wrist model 1";
-
-/// Added to the variances of features: no silhouette is known more exactly.
-const VARIANCE_FLOOR: f64 = 1e-3;
 
 /// The logarithm of the density of anything that is no part of a hand and its arm as they were learnt:
 /// what is unlike both classes is elsewhere.
@@ -35,7 +29,7 @@ impl WristModel {
     /// The model that is built in, learnt from drawn hands in every direction.
     pub fn builtin() -> &'static Self {
         static BUILTIN: LazyLock<WristModel> = LazyLock::new(|| {
-            WristModel::from_bytes(include_bytes!("../models/wrist.txt"))
+            WristModel::from_bytes(include_bytes!("../../models/wrist.txt"))
                 .expect("the model that is built in is well-formed")
         });
         &BUILTIN
@@ -53,7 +47,7 @@ impl WristModel {
         self.classes[0].distance(features)
     }
 
-    fn from_parts(parts: Box<Parts>) -> Option<Self> {
+    pub(crate) fn from_parts(parts: Box<Parts>) -> Option<Self> {
         let [wrist, elsewhere] = parts.each_ref().map(|(mean, cov)| Gaussian::new(*mean, cov));
         Some(Self { classes: [wrist?, elsewhere?], parts })
     }
@@ -116,51 +110,4 @@ fn numbers(line: &str) -> Option<Features> {
         *feature = words.next()??;
     }
     words.next().is_none().then_some(features)
-}
-
-/// Learns a [`WristModel`] from silhouettes whose wrists are known.
-#[derive(Debug, Clone, Default)]
-pub struct WristTrainer {
-    finder: HandFinder,
-    moments: [Moments; 2],
-    added: usize,
-}
-
-impl WristTrainer {
-    /// Sections further from the wrist than this share of the hand's length are elsewhere.
-    const APART: f64 = 0.15;
-
-    /// Adds a silhouette of one hand whose arm leaves by the image border, and where its wrist is,
-    /// in pixels; whether it could be used.
-    ///
-    /// # Errors
-    /// No hand in the mask.
-    pub fn add(&mut self, mask: &GrayImage, wrist: [f64; 2]) -> Result<bool> {
-        let Some((sections, at)) = self.finder.sections_at(mask, wrist)? else {
-            return Ok(false);
-        };
-        let Some(features) = sections.features(at) else { return Ok(false) };
-        self.moments[0].add(&features);
-        self.added += 1;
-        let apart = Self::APART * (sections.count() - at) as f64;
-        for section in 0..sections.count() {
-            if (section as f64 - at as f64).abs() > apart
-                && let Some(features) = sections.features(section)
-            {
-                self.moments[1].add(&features);
-            }
-        }
-        Ok(true)
-    }
-
-    /// The model.
-    ///
-    /// # Errors
-    /// Fewer silhouettes than features.
-    pub fn finish(&self) -> Result<WristModel> {
-        let parts = self.moments.each_ref().map(|moments| moments.finish(VARIANCE_FLOOR));
-        let (found, needed) = (self.added, FEATURES);
-        let model = WristModel::from_parts(Box::new(parts)).filter(|_| found >= needed);
-        model.ok_or(Error::TooFewWrists { found, needed })
-    }
 }

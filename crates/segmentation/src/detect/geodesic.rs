@@ -1,6 +1,6 @@
 //! How far each cell of a component is from some of its cells, without leaving the component.
 
-use crate::grid::Grid;
+use crate::detect::grid::Grid;
 
 /// A step to the side, diagonally, and two to one side with one across: fifths of a cell. So chamfered
 /// distances are within 2 % of the true ones (Borgefors, 1986).

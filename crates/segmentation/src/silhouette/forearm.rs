@@ -2,9 +2,9 @@
 
 use image::GrayImage;
 
-use crate::contour::Contour;
 use crate::error::Result;
-use crate::stump::{Stump, find_stump};
+use crate::silhouette::contour::Contour;
+use crate::silhouette::forearm_end::{Stump, find_stump};
 
 /// What the end of the forearm was recognised by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,14 +2,14 @@
 
 use image::GrayImage;
 
-use crate::clean::Cleanup;
-use crate::components::{Class, Components};
+use crate::detect::cross_sections::Sections;
+use crate::detect::geodesic::Geodesic;
+use crate::detect::grid::Grid;
+use crate::detect::wrist_model::WristModel;
 use crate::error::{Error, Result};
-use crate::geodesic::Geodesic;
-use crate::grid::Grid;
-use crate::majority::Majority;
-use crate::sections::Sections;
-use crate::wrist::WristModel;
+use crate::mask::cleanup::Cleanup;
+use crate::mask::components::{Class, Components};
+use crate::mask::majority::Majority;
 
 /// What may be a hand in a mask: a component, and where its wrist would be. All in pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]

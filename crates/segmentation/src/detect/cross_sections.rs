@@ -2,8 +2,8 @@
 //!
 //! Distances are measured within the silhouette, so that sections stay across an arm that bends.
 
-use crate::geodesic::Geodesic;
-use crate::grid::Grid;
+use crate::detect::geodesic::Geodesic;
+use crate::detect::grid::Grid;
 
 /// Weights of neighbouring sections in a smoothed width: the grid makes sections uneven.
 const SMOOTHING: [f64; 5] = [1.0, 2.0, 3.0, 2.0, 1.0];

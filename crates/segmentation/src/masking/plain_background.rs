@@ -4,7 +4,7 @@ use image::{GrayImage, RgbImage};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::otsu::otsu;
+use crate::masking::otsu::otsu;
 
 /// A plain wall behind the hand, evenly coloured but perhaps unevenly lit. It needs no training
 /// and no recorded background, and the hand may cover less than half of the image border.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::str::FromStr;
 
 use crate::error::{Error, Result};
-use crate::skin::{SkinModel, SkinParams, SkinParts};
+use crate::masking::skin::{SkinModel, SkinParams, SkinParts};
 
 const MAGIC: &str = "phalanx skin model 1";
 

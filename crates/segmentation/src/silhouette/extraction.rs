@@ -2,10 +2,10 @@
 
 use image::GrayImage;
 
-use crate::clean::{Workspace, keep_largest};
-use crate::contour::Contour;
 use crate::error::{Error, Result};
-use crate::forearm::{Evidence, Forearm};
+use crate::mask::cleanup::{Workspace, keep_largest};
+use crate::silhouette::contour::Contour;
+use crate::silhouette::forearm::{Evidence, Forearm};
 
 /// The shortest side of an image with a silhouette, in pixels.
 pub const MIN_SIDE: u32 = 16;
