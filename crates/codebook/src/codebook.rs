@@ -1,12 +1,12 @@
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    Error, Metric, Result,
-    packed::{LANES, Lanes, Packed},
-    samples,
-    support::Support,
-};
+use crate::distance::lanes::{LANES, Lanes};
+use crate::distance::metric::Metric;
+use crate::distance::packed::Packed;
+use crate::distance::support::Support;
+use crate::error::{Error, Result};
+use crate::samples;
 
 /// Vectors that stand for those around them.
 ///

@@ -1,4 +1,4 @@
-use crate::{MAX_MAGNITUDE, SUM_TOLERANCE};
+use crate::limits::{MAX_MAGNITUDE, SUM_TOLERANCE};
 
 /// The result of everything here that can fail.
 pub type Result<T> = std::result::Result<T, Error>;

@@ -1,10 +1,6 @@
-use crate::{Error, Metric, Result};
-
-/// How far the sum of a histogram may be from 1.
-pub const SUM_TOLERANCE: f64 = 1e-3;
-
-/// The largest magnitude of a number, so that sums of squares stay finite.
-pub const MAX_MAGNITUDE: f32 = 1e15;
+use crate::distance::metric::Metric;
+use crate::error::{Error, Result};
+use crate::limits::{MAX_MAGNITUDE, SUM_TOLERANCE};
 
 /// Checks that `values` are vectors of `dim` numbers that the metric can compare, one after the
 /// other, and at least one.

@@ -2,7 +2,11 @@
 
 use rayon::prelude::*;
 
-use crate::{Error, GaussianMixture, KMeans, Metric, MixtureParts, Result, lloyd::BLOCK};
+use crate::cluster::gaussian_mixture::{GaussianMixture, MixtureParts};
+use crate::cluster::kmeans::KMeans;
+use crate::cluster::lloyd::BLOCK;
+use crate::distance::metric::Metric;
+use crate::error::{Error, Result};
 
 /// The settings with which a [`GaussianMixture`] is found, and [`fit`](Self::fit).
 #[derive(Debug, Clone, Copy, PartialEq)]

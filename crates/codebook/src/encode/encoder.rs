@@ -1,6 +1,5 @@
-use serde::{Deserialize, Serialize};
-
-use crate::{Codebook, Error, Fisher, Result, Scratch, SoftCounts, Vlad, Voting};
+use crate::encode::scratch::Scratch;
+use crate::error::{Error, Result};
 
 /// Something that turns any number of samples into a vector of fixed length, whatever their order.
 ///
@@ -29,51 +28,6 @@ pub trait Coding {
     /// # Errors
     /// No samples, not a whole number of them, one that the coding cannot compare, or an output of another length than [`dim`](Self::dim).
     fn encode(&self, samples: &[f32], scratch: &mut Scratch, out: &mut [f64]) -> Result<()>;
-}
-
-/// A coding of any kind, as it is stored.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
-pub enum AnyCoding {
-    /// Votes into the centres of a codebook, hard or soft: the paper's.
-    Counts {
-        /// The centres.
-        codebook: Codebook,
-        /// How samples vote.
-        voting: Voting,
-    },
-    /// Residuals to the nearest centres.
-    Vlad(Vlad),
-    /// Derivatives of a mixture of Gaussians.
-    Fisher(Fisher),
-}
-
-impl Coding for AnyCoding {
-    fn bins(&self) -> usize {
-        match self {
-            Self::Counts { codebook, .. } => codebook.dim(),
-            Self::Vlad(vlad) => vlad.bins(),
-            Self::Fisher(fisher) => fisher.bins(),
-        }
-    }
-
-    fn dim(&self) -> usize {
-        match self {
-            Self::Counts { codebook, .. } => codebook.len(),
-            Self::Vlad(vlad) => vlad.dim(),
-            Self::Fisher(fisher) => fisher.dim(),
-        }
-    }
-
-    fn encode(&self, samples: &[f32], scratch: &mut Scratch, out: &mut [f64]) -> Result<()> {
-        match self {
-            Self::Counts { codebook, voting } => {
-                SoftCounts { codebook, voting: *voting }.encode(samples, scratch, out)
-            }
-            Self::Vlad(vlad) => vlad.encode(samples, scratch, out),
-            Self::Fisher(fisher) => fisher.encode(samples, scratch, out),
-        }
-    }
 }
 
 /// Refuses an output of another length than a code's.

@@ -1,20 +1,13 @@
 //! Vectors laid out so that another one meets many of them at once.
-#![allow(clippy::inline_always, reason = "must be compiled with the caller's instruction set")]
-
-mod chi_squared;
-mod euclidean;
 
 use pulp::Arch;
 use rayon::prelude::*;
 
-use self::{chi_squared::ChiSquared, euclidean::Euclidean};
-use crate::{Metric, support::Support};
-
-/// Vectors that are compared together.
-pub(crate) const LANES: usize = 16;
-
-/// One number for each vector of a block.
-pub(crate) type Lanes = [f32; LANES];
+use crate::distance::chi_squared_kernel::ChiSquared;
+use crate::distance::euclidean_kernel::Euclidean;
+use crate::distance::lanes::{LANES, Lanes};
+use crate::distance::metric::Metric;
+use crate::distance::support::Support;
 
 /// Vectors in blocks of [`LANES`], number by number within a block. The last block is filled up with
 /// vectors infinitely far from everything.
@@ -109,10 +102,11 @@ impl Tile<'_> {
     /// Writes the distance to every vector, in order and followed by infinities, and returns the
     /// smallest.
     pub(crate) fn compare(self, arch: Arch, to: &Support, distances: &mut Vec<f32>) -> f32 {
-        distances.resize(self.offsets.len() * LANES, 0.0);
-        match self.metric {
-            Metric::ChiSquared => arch.dispatch(ChiSquared { tile: self, to, distances }),
-            Metric::Euclidean => arch.dispatch(Euclidean { tile: self, to, distances }),
+        let Self { metric, dim, blocks, offsets } = self;
+        distances.resize(offsets.len() * LANES, 0.0);
+        match metric {
+            Metric::ChiSquared => arch.dispatch(ChiSquared { dim, blocks, offsets, to, distances }),
+            Metric::Euclidean => arch.dispatch(Euclidean { dim, blocks, offsets, to, distances }),
         }
     }
 }

@@ -1,8 +1,13 @@
 use rand_pcg::Pcg64;
 
-use crate::{
-    Codebook, KMeans, Metric, Result, lloyd::Assignment, packed::Packed, samples, seeding::Seeding,
-};
+use crate::cluster::kmeans::KMeans;
+use crate::cluster::lloyd::Assignment;
+use crate::cluster::seeding::Seeding;
+use crate::codebook::Codebook;
+use crate::distance::metric::Metric;
+use crate::distance::packed::Packed;
+use crate::error::Result;
+use crate::samples;
 
 /// K-means for samples that do not fit into memory, which come in batches (Sculley, 2010).
 ///

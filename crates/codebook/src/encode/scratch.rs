@@ -1,4 +1,5 @@
-use crate::{support::Support, voting::Rank};
+use crate::distance::support::Support;
+use crate::encode::nearest::Rank;
 
 /// The memory that coding needs, kept from one call to the next.
 #[derive(Debug, Clone, Default)]

@@ -1,10 +1,11 @@
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    Coding, GaussianMixture, Metric, Result, Scratch,
-    coding::{check_length, normalise},
-    samples,
-};
+use crate::cluster::gaussian_mixture::GaussianMixture;
+use crate::distance::metric::Metric;
+use crate::encode::encoder::{Coding, check_length, normalise};
+use crate::encode::scratch::Scratch;
+use crate::error::Result;
+use crate::samples;
 
 /// The Fisher vector: how a mixture of Gaussians would have to change to fit the samples better
 /// (Perronnin and Dance, 2007), by its means and its deviations.

@@ -1,6 +1,9 @@
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Metric, Result, samples};
+use crate::distance::metric::Metric;
+use crate::error::{Error, Result};
+use crate::limits::SUM_TOLERANCE;
+use crate::samples;
 
 /// A mixture of Gaussians with diagonal covariances.
 ///
@@ -61,7 +64,7 @@ impl GaussianMixture {
             return Err(Error::BadHeight { what: "variance", index, bin, value });
         }
         let sum: f64 = weights.iter().sum();
-        if !weights.iter().all(|&w| w > 0.0) || (sum - 1.0).abs() > samples::SUM_TOLERANCE {
+        if !weights.iter().all(|&w| w > 0.0) || (sum - 1.0).abs() > SUM_TOLERANCE {
             return Err(Error::BadWeights { sum });
         }
         let height = |(weight, variances): (&f64, &[f32])| {

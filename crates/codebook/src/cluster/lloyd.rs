@@ -3,7 +3,10 @@
 use pulp::Arch;
 use rayon::prelude::*;
 
-use crate::{Metric, codebook::first_equal, packed::Packed, support::Support};
+use crate::codebook::first_equal;
+use crate::distance::metric::Metric;
+use crate::distance::packed::Packed;
+use crate::distance::support::Support;
 
 /// Samples that are summed up together. Fixed, so that the rounding of the sums does not depend on
 /// the number of threads.

@@ -1,17 +1,20 @@
 //! χ² of one histogram and many.
+#![allow(clippy::inline_always, reason = "must be compiled with the caller's instruction set")]
 
 use pulp::NullaryFnOnce;
 
-use super::{LANES, Lanes, Tile};
-use crate::support::{Pair, Support};
+use crate::distance::lanes::{LANES, Lanes};
+use crate::distance::support::{Pair, Support};
 
 /// Blocks that are compared together.
 const TOGETHER: usize = 3;
 
-pub(super) struct ChiSquared<'a> {
-    pub(super) tile: Tile<'a>,
-    pub(super) to: &'a Support,
-    pub(super) distances: &'a mut [f32],
+pub(crate) struct ChiSquared<'a> {
+    pub(crate) dim: usize,
+    pub(crate) blocks: &'a [Lanes],
+    pub(crate) offsets: &'a [Lanes],
+    pub(crate) to: &'a Support,
+    pub(crate) distances: &'a mut [f32],
 }
 
 impl NullaryFnOnce for ChiSquared<'_> {
@@ -19,7 +22,7 @@ impl NullaryFnOnce for ChiSquared<'_> {
 
     #[inline(always)]
     fn call(self) -> f32 {
-        let Tile { dim, blocks, offsets, .. } = self.tile;
+        let Self { dim, blocks, offsets, .. } = self;
         let (distances, _) = self.distances.as_chunks_mut::<LANES>();
         let whole = offsets.len() / TOGETHER * TOGETHER;
         let (blocks, last_blocks) = blocks.split_at(whole * dim);

@@ -1,8 +1,12 @@
 use rand_pcg::Pcg64;
 
-use crate::{
-    Codebook, Error, Metric, Result, lloyd::Assignment, packed::Packed, samples, seeding::Seeding,
-};
+use crate::cluster::lloyd::Assignment;
+use crate::cluster::seeding::Seeding;
+use crate::codebook::Codebook;
+use crate::distance::metric::Metric;
+use crate::distance::packed::Packed;
+use crate::error::{Error, Result};
+use crate::samples;
 
 /// K-means, with the χ² statistic unless told otherwise: the settings, and [`fit`](KMeans::fit).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,14 +1,17 @@
 //! Squared Euclidean distances of one vector and many.
+#![allow(clippy::inline_always, reason = "must be compiled with the caller's instruction set")]
 
 use pulp::{Simd, WithSimd};
 
-use super::{LANES, Tile};
-use crate::support::Support;
+use crate::distance::lanes::{LANES, Lanes};
+use crate::distance::support::Support;
 
-pub(super) struct Euclidean<'a> {
-    pub(super) tile: Tile<'a>,
-    pub(super) to: &'a Support,
-    pub(super) distances: &'a mut [f32],
+pub(crate) struct Euclidean<'a> {
+    pub(crate) dim: usize,
+    pub(crate) blocks: &'a [Lanes],
+    pub(crate) offsets: &'a [Lanes],
+    pub(crate) to: &'a Support,
+    pub(crate) distances: &'a mut [f32],
 }
 
 impl WithSimd for Euclidean<'_> {
@@ -18,9 +21,9 @@ impl WithSimd for Euclidean<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> f32 {
         let mut columns = Columns {
             simd,
-            dim: self.tile.dim,
-            blocks: S::as_simd_f32s(self.tile.blocks.as_flattened()).0,
-            offsets: S::as_simd_f32s(self.tile.offsets.as_flattened()).0,
+            dim: self.dim,
+            blocks: S::as_simd_f32s(self.blocks.as_flattened()).0,
+            offsets: S::as_simd_f32s(self.offsets.as_flattened()).0,
             to: self.to,
             distances: S::as_mut_simd_f32s(self.distances).0,
             smallest: simd.splat_f32s(f32::INFINITY),

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::chi_squared;
+use crate::distance::chi_squared::chi_squared;
 
 /// What the distance of two vectors is. Both are squares already.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]

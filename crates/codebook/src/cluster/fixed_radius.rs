@@ -2,7 +2,12 @@ use pulp::Arch;
 use rand_core::Rng;
 use rand_pcg::Pcg64;
 
-use crate::{Codebook, Error, Metric, Result, packed::Packed, samples, support::Support};
+use crate::codebook::Codebook;
+use crate::distance::metric::Metric;
+use crate::distance::packed::Packed;
+use crate::distance::support::Support;
+use crate::error::{Error, Result};
+use crate::samples;
 
 /// Centres that cover the samples evenly, wherever these are dense or sparse (Jurie and Triggs,
 /// 2005): balls of one radius. K-means spends most centres where most samples are, which are often

@@ -1,12 +1,11 @@
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    Codebook, Coding, Result, Scratch,
-    codebook::first_equal,
-    coding::{check_length, normalise},
-    samples,
-};
+use crate::codebook::{Codebook, first_equal};
+use crate::encode::encoder::{Coding, check_length, normalise};
+use crate::encode::scratch::Scratch;
+use crate::error::Result;
+use crate::samples;
 
 /// The vector of locally aggregated descriptors: what is left of the samples when their nearest
 /// centres are taken away, summed for each centre (Jégou, Douze, Schmid and Pérez, 2010).

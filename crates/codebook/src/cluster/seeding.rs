@@ -5,7 +5,11 @@ use rand_core::Rng;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
-use crate::{Error, Metric, Result, lloyd::BLOCK, packed::Packed, support::Support};
+use crate::cluster::lloyd::BLOCK;
+use crate::distance::metric::Metric;
+use crate::distance::packed::Packed;
+use crate::distance::support::Support;
+use crate::error::{Error, Result};
 
 /// Distances below this part of χ²'s largest, or of a squared length, may be rounding alone.
 const DOUBTFUL: f32 = 1e-5;
