@@ -2,7 +2,9 @@
 
 use std::io::{Read, Write};
 
-use crate::{Dof, Error, Pose, Result};
+use crate::dof::Dof;
+use crate::error::{Error, Result};
+use crate::pose::Pose;
 
 /// The name of the column that tells which frame a row belongs to.
 const FRAME: &str = "frame";

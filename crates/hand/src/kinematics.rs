@@ -2,8 +2,12 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use crate::dof::{Digit, Dof};
+use crate::motion::Link;
 use crate::motion::{Motion, Motions};
-use crate::{Ball, Digit, Dof, FingerShape, HandShape, Link, Pose, Primitive, Side, ThumbShape};
+use crate::pose::Pose;
+use crate::primitive::{Ball, Primitive};
+use crate::shape::{FingerShape, HandShape, Side, ThumbShape};
 
 /// How many joints a posed hand reports.
 pub const JOINTS: usize = 21;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{Digit, Dof};
+use crate::dof::{Digit, Dof};
 
 /// A rigid part of the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

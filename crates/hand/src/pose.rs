@@ -5,7 +5,7 @@ use std::ops::{Index, IndexMut};
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::{Digit, Dof};
+use crate::dof::{Digit, Dof};
 
 /// The 28 numbers of a hand pose, y ∈ ℝ²⁸ of the paper's § 3: radians and millimetres, in the
 /// order of [`Dof::ALL`].

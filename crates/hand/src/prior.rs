@@ -1,6 +1,7 @@
 //! Random poses: with the couplings of a real hand, and without.
 
-use crate::{Digit, Dof, Pose, abduction_limit};
+use crate::dof::{Digit, Dof};
+use crate::pose::{Pose, abduction_limit};
 
 /// A digit's four angles from a prior with the couplings of a real hand, radians, in the order of
 /// [`Digit::dofs`]. DIP follows PIP by about two thirds (Rijpkema and Girard 1991), the thumb's

@@ -3,7 +3,8 @@
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Pose, Result};
+use crate::error::{Error, Result};
+use crate::pose::Pose;
 
 /// Which hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

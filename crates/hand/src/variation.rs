@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{FingerShape, ForearmShape, HandShape, PalmShape, ThumbShape};
+use crate::shape::{FingerShape, ForearmShape, HandShape, PalmShape, ThumbShape};
 
 impl HandShape {
     /// A hand in which every bone's length and every radius is multiplied by a factor of its own,

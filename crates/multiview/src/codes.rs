@@ -3,7 +3,9 @@
 use phalanx_codebook::{AnyCoding, Coding};
 use serde::{Deserialize, Serialize};
 
-use crate::{Concatenation, Error, Result, Scratch};
+use crate::concatenation::Concatenation;
+use crate::error::{Error, Result};
+use crate::scratch::Scratch;
 
 /// The codings of the views, whose codes are one after the other the descriptor x. With soft counts
 /// it describes as a [`Concatenation`] does.

@@ -1,6 +1,6 @@
 //! High-level fusion: estimates of single views, joined.
 
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// What one view says of the m outputs.
 #[derive(Debug, Clone, Copy, PartialEq)]

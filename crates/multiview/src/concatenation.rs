@@ -4,7 +4,8 @@ use phalanx_codebook::{Codebook, SoftCounts, Voting};
 use serde::{Deserialize, Serialize};
 
 use crate::codes::join;
-use crate::{Error, Result, Scratch};
+use crate::error::{Error, Result};
+use crate::scratch::Scratch;
 
 /// The fitted codebooks of the views; joins the views' histograms into one vector x (§ 2 of the
 /// paper: "combine the information at an intermediate level").

@@ -3,7 +3,8 @@
 use phalanx_codebook::{Codebook, Voting};
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Result, Scratch};
+use crate::error::{Error, Result};
+use crate::scratch::Scratch;
 
 /// One codebook for the shape contexts of all views, which vote into one histogram (§ 2 of the
 /// paper: "the low level approach"). Which view a context came from is lost.

@@ -2,7 +2,10 @@
 
 use phalanx_codebook::{AnyCoding, Codebook, KMeans, Vlad, Voting};
 
-use crate::{Codes, Concatenation, Error, Pooled, Result};
+use crate::codes::Codes;
+use crate::concatenation::Concatenation;
+use crate::error::{Error, Result};
+use crate::pooled::Pooled;
 
 /// The codebooks to learn: the paper's 90 centres, shared as evenly as they go by the views, so that
 /// descriptors of one view and of three have the same length (§ 2); or all in one codebook, for

@@ -5,7 +5,8 @@ use image::{Rgb, RgbImage};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::{Error, Result, Supersampling};
+use crate::error::{Error, Result};
+use crate::supersampling::Supersampling;
 
 /// How a shaded picture looks. Colours are 8-bit sRGB; light is mixed in those values, as
 /// plain Lambert and Blinn–Phong shading without cast shadows.

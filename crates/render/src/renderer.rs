@@ -5,11 +5,13 @@ use image::{GrayImage, RgbImage};
 use phalanx_camera::{Camera, Intrinsics, Lens};
 use phalanx_hand::Primitive;
 
+use crate::appearance::Appearance;
 use crate::appearance::Sensor;
+use crate::error::{Error, Result};
 use crate::fill::Filler;
 use crate::solid::Scene;
+use crate::supersampling::Supersampling;
 use crate::surface::Hit;
-use crate::{Appearance, Error, Result, Supersampling};
 use crate::{clip, outline};
 
 /// Depth along the camera's axis, row by row.

@@ -1,7 +1,5 @@
-use crate::{
-    Error, Result,
-    points::{centroid, check_points, cross, dot, in_range, sub, unit},
-};
+use crate::error::{Error, Result};
+use crate::points::{centroid, check_points, cross, dot, in_range, sub, unit};
 
 /// The hand axis: from the forearm's end to the tip of the hand.
 #[derive(Debug, Clone, Copy, PartialEq)]

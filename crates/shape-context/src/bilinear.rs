@@ -2,12 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::{
-    BINS, RINGS, SECTORS,
-    grid::sector_edges,
-    orientation::Axes,
-    points::{Columns, cross, dot},
-};
+use crate::grid::{BINS, RINGS, SECTORS, sector_edges};
+use crate::orientation::Axes;
+use crate::points::{Columns, cross, dot};
 
 /// Adds, for every point, the shares of the others in each bin; `weights` gets one row per point.
 pub(crate) fn share(

@@ -1,5 +1,5 @@
-use crate::points::{MAX_COORDINATE, MAX_POINTS, MIN_MEAN_DISTANCE, MIN_POINTS};
-use crate::{BINS, MAX_MATCHED};
+use crate::grid::BINS;
+use crate::limits::{MAX_COORDINATE, MAX_MATCHED, MAX_POINTS, MIN_MEAN_DISTANCE, MIN_POINTS};
 
 /// The result of everything here that can fail.
 pub type Result<T> = std::result::Result<T, Error>;

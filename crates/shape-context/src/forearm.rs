@@ -1,10 +1,6 @@
-use crate::{
-    Error, Result,
-    points::{
-        MIN_MEAN_DISTANCE, centroid, check_points, cross, dot, in_range, norm, perpendicular, sub,
-        unit,
-    },
-};
+use crate::error::{Error, Result};
+use crate::limits::MIN_MEAN_DISTANCE;
+use crate::points::{centroid, check_points, cross, dot, in_range, norm, perpendicular, sub, unit};
 
 /// The axis of the forearm, and where a cut across it meets both of its sides.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,4 +1,7 @@
-use crate::{BINS, Error, Result, assignment::Assignment};
+use crate::assignment::Assignment;
+use crate::error::{Error, Result};
+use crate::grid::BINS;
+use crate::limits::MAX_MATCHED;
 
 /// Compares shapes by their contexts, keeping its memory from one pair to the next.
 ///
@@ -36,10 +39,6 @@ pub struct Matching<'a> {
     /// the other.
     pub partners: &'a [usize],
 }
-
-/// The most contexts that a shape may have to be matched: memory grows with the product of both
-/// shapes', time with its root times that.
-pub const MAX_MATCHED: usize = 4000;
 
 impl Matcher {
     /// An empty workspace.

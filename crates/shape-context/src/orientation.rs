@@ -1,18 +1,9 @@
-use crate::{
-    Error, Result, hand_axis,
-    points::{centroid, in_range, norm, perpendicular, sub, unit},
-    principal::principal_axis,
-    tangent::tangents,
-};
-
-/// Whether a contour's last point is followed by its first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Chain {
-    /// The points go all the way round.
-    Closed,
-    /// The first and last points are ends, as where a forearm leaves the picture.
-    Open,
-}
+use crate::axis::hand_axis;
+use crate::chain::Chain;
+use crate::error::{Error, Result};
+use crate::points::{centroid, in_range, norm, perpendicular, sub, unit};
+use crate::principal::principal_axis;
+use crate::tangent::tangents;
 
 /// What the direction 0° of the shape contexts is.
 ///

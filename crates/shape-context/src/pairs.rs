@@ -6,11 +6,9 @@
 
 use pulp::{Arch, NullaryFnOnce};
 
-use crate::{
-    grid::{Grid, OPPOSITE, SLOTS},
-    orientation::Axes,
-    points::Columns,
-};
+use crate::grid::{Grid, OPPOSITE, SLOTS};
+use crate::orientation::Axes;
+use crate::points::Columns;
 
 /// How many points fell into each slot, seen from one point.
 pub(crate) type Counts = [u32; SLOTS];

@@ -1,33 +1,5 @@
-use crate::{Error, Result, pairs};
-
-/// The fewest points that make a shape.
-pub const MIN_POINTS: usize = 3;
-
-/// The most points accepted: time grows with their square (a second or so at this limit).
-pub const MAX_POINTS: usize = 20_000;
-
-/// The largest coordinate accepted, in pixels, so that no product of a few of them overflows.
-pub const MAX_COORDINATE: f64 = 1e9;
-
-/// The smallest mean distance, in pixels, that counts as an extent.
-pub const MIN_MEAN_DISTANCE: f64 = 1e-9;
-
-/// The mean distance μ over all pairs of the points, in pixels: the scale of their shape contexts.
-///
-/// # Errors
-/// Too few or too many points, a coordinate out of range, or all points in one place.
-///
-/// ```
-/// // The three sides of a triangle.
-/// let mean = phalanx_shape_context::mean_distance(&[[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]])?;
-/// assert!((mean - 4.0).abs() < 1e-12);
-/// # Ok::<(), phalanx_shape_context::Error>(())
-/// ```
-pub fn mean_distance(points: &[[f64; 2]]) -> Result<f64> {
-    let mut columns = Columns::default();
-    columns.load(points)?;
-    columns.mean_distance()
-}
+use crate::error::{Error, Result};
+use crate::limits::{MAX_COORDINATE, MAX_POINTS, MIN_POINTS};
 
 /// The coordinates of checked points in two runs, as vector instructions like them.
 #[derive(Debug, Clone, Default)]
@@ -44,16 +16,6 @@ impl Columns {
         self.xs.extend(points.iter().map(|p| p[0]));
         self.ys.extend(points.iter().map(|p| p[1]));
         Ok(())
-    }
-
-    pub(crate) fn mean_distance(&self) -> Result<f64> {
-        let n = self.xs.len();
-        let pairs = (n * (n - 1) / 2) as f64;
-        let mean_distance = pairs::distance_sum(self) / pairs;
-        if mean_distance < MIN_MEAN_DISTANCE {
-            return Err(Error::Coincident { mean_distance });
-        }
-        Ok(mean_distance)
     }
 }
 

@@ -1,7 +1,5 @@
-use crate::{
-    Error, Result,
-    points::{centroid, dot, perpendicular, sub},
-};
+use crate::error::{Error, Result};
+use crate::points::{centroid, dot, perpendicular, sub};
 
 /// Relative size below which a moment is taken for zero: far above rounding, far below any shape.
 const NEGLIGIBLE: f64 = 1e-9;

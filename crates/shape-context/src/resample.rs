@@ -1,7 +1,7 @@
-use crate::{
-    Chain, Error, Result,
-    points::{MAX_POINTS, in_range, norm, sub},
-};
+use crate::chain::Chain;
+use crate::error::{Error, Result};
+use crate::limits::MAX_POINTS;
+use crate::points::{in_range, norm, sub};
 
 /// How often each point is averaged with its neighbours, 1 : 2 : 1, against the steps of the grid.
 const SMOOTHINGS: usize = 2;

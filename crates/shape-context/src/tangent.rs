@@ -1,7 +1,6 @@
-use crate::{
-    Chain, Error, Result,
-    points::{cross, norm, perpendicular, sub, unit},
-};
+use crate::chain::Chain;
+use crate::error::{Error, Result};
+use crate::points::{cross, norm, perpendicular, sub, unit};
 
 /// How many neighbours on either side a tangent is fitted to: on the pixel grid the chord of the
 /// nearest two only knows multiples of 45°.

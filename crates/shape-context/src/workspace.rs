@@ -1,10 +1,10 @@
-use crate::{
-    BINS, Error, Orientation, Result, bilinear,
-    grid::SLOTS,
-    orientation::Axes,
-    pairs::{self, Counts},
-    points::Columns,
-};
+use crate::error::{Error, Result};
+use crate::grid::{BINS, SLOTS};
+use crate::mean_distance::mean_distance_of;
+use crate::orientation::{Axes, Orientation};
+use crate::pairs::Counts;
+use crate::points::Columns;
+use crate::{bilinear, pairs};
 
 /// How a point votes for where it is seen.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
@@ -95,7 +95,7 @@ impl ShapeContexts {
         orientation: Orientation,
     ) -> Result<Descriptors<'_>> {
         self.points.load(points)?;
-        let mean_distance = self.points.mean_distance()?;
+        let mean_distance = mean_distance_of(&self.points)?;
         self.axes.find(points, orientation, mean_distance)?;
         let Self { points, axes, slots, counts, weights, histograms, .. } = self;
         let normalised = match self.binning {

@@ -3,8 +3,10 @@
 use glam::{DMat2, DMat3, DVec2};
 use serde::{Deserialize, Serialize};
 
-use super::Lens;
-use super::positive::is_positive;
+use crate::lens::positive::is_positive;
+
+/// Where folds are no longer looked for: a radius of the normalised plane, 89.9° off the axis.
+pub(crate) const FARTHEST: f64 = 1e3;
 
 /// Radial and tangential distortion of the normalised image plane (z = 1), as in OpenCV's
 /// `projectPoints` with up to 14 coefficients (D. C. Brown, 1966; the rational factor: D. Claus,
@@ -156,7 +158,7 @@ impl Distortion {
         let bent =
             if self.is_tilted() { tilted(&self.tilt().inverse(), distorted) } else { distorted };
         let (direction, radius) = (bent.normalize_or_zero(), bent.length());
-        let (mut short, mut beyond) = (0.0, Lens::FARTHEST);
+        let (mut short, mut beyond) = (0.0, FARTHEST);
         for _ in 0..60 {
             let middle: f64 = 0.5 * (short + beyond);
             let s = middle * middle;

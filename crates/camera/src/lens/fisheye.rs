@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::positive::is_positive;
+use crate::lens::positive::is_positive;
 
 /// A fisheye lens as in OpenCV's `fisheye` module, Kalibr's `equidistant` and COLMAP's
 /// `OPENCV_FISHEYE` (J. Kannala, S. Brandt, 2006, *A generic camera model and calibration method for

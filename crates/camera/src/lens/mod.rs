@@ -36,7 +36,7 @@ impl Lens {
     pub const PERFECT: Self = Self::Perspective(Distortion::NONE);
 
     /// Where folds are no longer looked for: a radius of the normalised plane, 89.9° off the axis.
-    pub const FARTHEST: f64 = 1e3;
+    pub const FARTHEST: f64 = distortion::FARTHEST;
 
     /// Whether the lens is perfect.
     pub fn is_perfect(&self) -> bool {

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec2, DVec3};
 use phalanx_hand::{Ball, Primitive};
 use proptest::prelude::*;
 
-use super::Scene;
+use crate::solid::Scene;
 
 /// The least value of a convex function on 0..1.
 fn least(mut f: impl FnMut(f64) -> f64) -> f64 {
