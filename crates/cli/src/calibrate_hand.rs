@@ -6,7 +6,10 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 use image::DynamicImage;
 use phalanx::{Estimator, Picture, Refiner, Segmenter, Workspace, mask_from, photograph_from};
-use phalanx_refine::{Calibration, CalibrationFrame, CameraDoubt, Doubt, Moves, Refinement};
+use phalanx_refine::{
+    BundleAdjustment, BundleFrame, CameraMotion, ExtrinsicsPrior, NuisanceParameters,
+    PoseFitSettings,
+};
 use phalanx_segmentation::SkinModel;
 
 use crate::input;
@@ -41,8 +44,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let output = Output::new(&arguments.out, &[&arguments.model])?;
     let estimator = input::model(&arguments.model)?;
     let names = frame_names(&arguments.frames, &estimator)?;
-    let doubt = Doubt::default();
-    let refinement = Refinement { doubt: Some(doubt), ..Refinement::default() };
+    let nuisance = NuisanceParameters::default();
+    let refinement = PoseFitSettings { nuisance: Some(nuisance), ..PoseFitSettings::default() };
     let refiner = Refiner::for_estimator(&estimator, refinement)?;
     let mut frames = Vec::new();
     for name in &names {
@@ -56,16 +59,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         found >= LEAST_FRAMES,
         "{found} frames can be used; at least {LEAST_FRAMES} are needed"
     );
-    let cameras = doubt.cameras.filter(|_| arguments.doubt_cameras);
-    let cameras = cameras.map(|doubt| CameraDoubt { moves: Moves::Never, ..doubt });
-    let calibration = Calibration { cameras, ..Calibration::default() };
+    let cameras = nuisance.cameras.filter(|_| arguments.doubt_cameras);
+    let cameras =
+        cameras.map(|cameras| ExtrinsicsPrior { motion: CameraMotion::Static, ..cameras });
+    let calibration = BundleAdjustment { cameras, ..BundleAdjustment::default() };
     let calibrated = refiner.calibrate(&calibration, &frames)?;
     output.write(calibrated.hand.to_toml().as_bytes())?;
-    let overlaps: Vec<f64> = calibrated.overlaps.into_iter().flatten().collect();
+    let overlaps: Vec<f64> = calibrated.ious.into_iter().flatten().collect();
     let mean = overlaps.iter().sum::<f64>() / overlaps.len() as f64;
     output.say(&format!(
         "from {found} frames; silhouettes overlap by {mean:.3}, borders are {:.2} px apart{}",
-        calibrated.border_px,
+        calibrated.boundary_rms_px,
         if calibrated.converged { "" } else { "; it stopped before it settled" },
     ))
 }
@@ -89,7 +93,7 @@ fn frame(
     name: &str,
     estimator: &Estimator,
     refiner: &Refiner,
-) -> Result<CalibrationFrame> {
+) -> Result<BundleFrame> {
     let cameras = &estimator.rig().cameras;
     let paths = cameras.iter().map(|camera| arguments.frames.join(&camera.name).join(name));
     let pictures: Vec<DynamicImage> =

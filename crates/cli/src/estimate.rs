@@ -10,7 +10,7 @@ use phalanx::{
     draw_overlay, draw_silhouette, draw_window_overlay, mask_from, photograph_from, working_window,
 };
 use phalanx_hand::HandShape;
-use phalanx_refine::{Doubt, Refinement};
+use phalanx_refine::{NuisanceParameters, PoseFitSettings};
 use phalanx_segmentation::{Silhouette, SkinModel};
 
 use crate::input::{self, Crop};
@@ -103,13 +103,16 @@ fn refine(
     estimate: Estimate,
     doubts: &mut Vec<String>,
 ) -> Result<Estimate> {
-    let refinement = Refinement { doubt: Some(Doubt::default()), ..Refinement::default() };
+    let refinement = PoseFitSettings {
+        nuisance: Some(NuisanceParameters::default()),
+        ..PoseFitSettings::default()
+    };
     let refiner = Refiner::for_estimator(estimator, refinement)?.with_hand(hand)?;
     let RefinedEstimate { refined, fit, .. } = refiner.refine_estimate(estimator, estimate)?;
     if !fit.converged {
         doubts.push("the refinement stopped before it settled".to_owned());
     }
-    for (camera, overlap) in estimator.rig().cameras.iter().zip(&fit.overlaps) {
+    for (camera, overlap) in estimator.rig().cameras.iter().zip(&fit.ious) {
         if *overlap < GOOD_OVERLAP {
             let camera = &camera.name;
             doubts.push(format!(

@@ -9,7 +9,7 @@ use phalanx::{
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose, coupled_pose};
-use phalanx_refine::Refinement;
+use phalanx_refine::PoseFitSettings;
 
 /// Few, so that it takes seconds; the preset asks for more.
 const LEARNT_FROM: usize = 2000;
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let training = Preset::Fast.training();
     let learnt = training.shard(&rig, &hand, &scenes(1, LEARNT_FROM), Shard::WHOLE, &NoProgress)?;
     let estimator = learnt.finish(&NoProgress)?;
-    let refiner = Refiner::for_estimator(&estimator, Refinement::default())?;
+    let refiner = Refiner::for_estimator(&estimator, PoseFitSettings::default())?;
 
     let mut describer = SceneDescriber::new(&rig, estimator.descriptor().view_config())?;
     let mut workspace = Workspace::default();
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let refined = refiner.refine(&refiner.evidence(&silhouettes)?, &estimate)?;
         let [before, after] =
             [estimate.pose, refined.pose].map(|pose| error_deg(&pose, &scene.pose));
-        println!("{before:8.1}°  {after:6.1}°  {:.3?}", refined.overlaps);
+        println!("{before:8.1}°  {after:6.1}°  {:.3?}", refined.ious);
     }
     Ok(())
 }

@@ -4,7 +4,8 @@ use glam::DAffine3;
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{Dof, HandShape, Pose, coupled_pose};
 use phalanx_refine::{
-    Calibrated, Calibration, CalibrationFrame, Evidence, PosePrior, Refined, Refinement,
+    BundleAdjustment, BundleFrame, BundleResult, PoseFit, PoseFitSettings, PosePrior,
+    SilhouetteObservation,
 };
 use phalanx_segmentation::Silhouette;
 
@@ -21,9 +22,9 @@ const POSTURES: u64 = 2000;
 /// more open, so that what fits well may still be wrong; a hand that had to be doubted never fits as
 /// well. Where the hand may be anywhere, its fingers are estimated less well, and a wrong posture is what
 /// most doubts come from.
-fn apart(refined: &Refined, estimate: &Estimate) -> f64 {
+fn apart(refined: &PoseFit, estimate: &Estimate) -> f64 {
     let is_anywhere = estimate.observation.framing() == Framing::Window;
-    match (refined.doubted, refined.overlaps.len()) {
+    match (refined.nuisance_fitted, refined.ious.len()) {
         (true, _) if is_anywhere => 0.0, // always
         (true, _) => 0.35,
         (false, 2) => 0.28,
@@ -40,9 +41,9 @@ pub struct RefinedEstimate {
     /// The refined one.
     pub refined: Estimate,
     /// How well it fits what was seen.
-    pub fit: Refined,
+    pub fit: PoseFit,
     /// Other poses that explain what was seen, the more believable first.
-    pub others: Vec<Refined>,
+    pub others: Vec<PoseFit>,
 }
 
 /// Fits the hand to the silhouettes that it was estimated from.
@@ -52,7 +53,7 @@ pub struct Refiner {
     rest: DAffine3,
     hand: HandShape,
     postures: PosePrior,
-    refinement: Refinement,
+    refinement: PoseFitSettings,
 }
 
 impl Refiner {
@@ -66,7 +67,7 @@ impl Refiner {
         rig: &Rig,
         hand: &HandShape,
         poses: &[Pose],
-        refinement: Refinement,
+        refinement: PoseFitSettings,
     ) -> Result<Self> {
         hand.validate()?;
         Ok(Self {
@@ -83,7 +84,7 @@ impl Refiner {
     ///
     /// # Errors
     /// As of [`new`](Self::new).
-    pub fn for_estimator(estimator: &Estimator, refinement: Refinement) -> Result<Self> {
+    pub fn for_estimator(estimator: &Estimator, refinement: PoseFitSettings) -> Result<Self> {
         let pose = |item| {
             let mut random = ItemRng::new(0, item);
             coupled_pose(|| random.uniform())
@@ -103,7 +104,7 @@ impl Refiner {
 
     /// The same, refining otherwise.
     #[must_use]
-    pub fn with_refinement(&self, refinement: Refinement) -> Self {
+    pub fn with_refinement(&self, refinement: PoseFitSettings) -> Self {
         Self { refinement, ..self.clone() }
     }
 
@@ -113,7 +114,7 @@ impl Refiner {
     }
 
     /// How it refines.
-    pub fn refinement(&self) -> &Refinement {
+    pub fn refinement(&self) -> &PoseFitSettings {
         &self.refinement
     }
 
@@ -131,10 +132,10 @@ impl Refiner {
     ///
     /// # Errors
     /// A silhouette of another size, or without a border.
-    pub fn evidence(&self, silhouettes: &[Silhouette]) -> Result<Vec<Evidence>> {
+    pub fn evidence(&self, silhouettes: &[Silhouette]) -> Result<Vec<SilhouetteObservation>> {
         self.check_count(silhouettes.len())?;
         let pairs = self.cameras.iter().zip(silhouettes);
-        let evidence = pairs.map(|(camera, seen)| Evidence::new(camera, &seen.mask));
+        let evidence = pairs.map(|(camera, seen)| SilhouetteObservation::new(camera, &seen.mask));
         Ok(evidence.collect::<Result<_, _>>()?)
     }
 
@@ -142,12 +143,12 @@ impl Refiner {
     ///
     /// # Errors
     /// As of [`evidence`](Self::evidence).
-    pub fn evidence_of(&self, observation: &Observation) -> Result<Vec<Evidence>> {
+    pub fn evidence_of(&self, observation: &Observation) -> Result<Vec<SilhouetteObservation>> {
         self.check_count(observation.views.len())?;
         let pairs = self.cameras.iter().zip(&observation.views);
         let evidence = |(camera, view): (&Camera, &ObservedView)| match &view.window {
             Some(window) => window.evidence(&view.silhouette),
-            None => Ok(Evidence::new(camera, &view.silhouette.mask)?),
+            None => Ok(SilhouetteObservation::new(camera, &view.silhouette.mask)?),
         };
         pairs.map(evidence).collect()
     }
@@ -168,17 +169,17 @@ impl Refiner {
     pub fn prior(&self, pose: &Pose, std: &[Option<f64>; Dof::COUNT]) -> Result<PosePrior> {
         // A prior holds a number of no deviation where it is.
         let std = std.map(Option::unwrap_or_default);
-        Ok(PosePrior::independent(*pose, &std)?.and(&self.postures)?)
+        Ok(PosePrior::independent(*pose, &std)?.product(&self.postures)?)
     }
 
     /// One frame to calibrate a hand from.
     ///
     /// # Errors
     /// As of [`prior`](Self::prior).
-    pub fn frame(&self, estimate: &Estimate) -> Result<CalibrationFrame> {
+    pub fn frame(&self, estimate: &Estimate) -> Result<BundleFrame> {
         let evidence = self.evidence_of(&estimate.observation)?;
         let prior = self.prior(&estimate.pose, &estimate.std)?;
-        Ok(CalibrationFrame { evidence, start: *prior.mean(), prior })
+        Ok(BundleFrame { observations: evidence, start: *prior.mean(), prior })
     }
 
     /// Fits the hand's proportions to several frames of it.
@@ -187,9 +188,9 @@ impl Refiner {
     /// No frame, or frames that differ in their views.
     pub fn calibrate(
         &self,
-        calibration: &Calibration,
-        frames: &[CalibrationFrame],
-    ) -> Result<Calibrated> {
+        calibration: &BundleAdjustment,
+        frames: &[BundleFrame],
+    ) -> Result<BundleResult> {
         Ok(calibration.run(&self.hand, &self.rest, frames)?)
     }
 
@@ -197,7 +198,7 @@ impl Refiner {
     ///
     /// # Errors
     /// As of [`prior`](Self::prior).
-    pub fn refined_estimate(&self, estimate: Estimate, refined: &Refined) -> Result<Estimate> {
+    pub fn refined_estimate(&self, estimate: Estimate, refined: &PoseFit) -> Result<Estimate> {
         let prior = self.prior(&estimate.pose, &estimate.std)?;
         let mut std = [None; Dof::COUNT];
         let diagonal = refined.covariance.iter().step_by(prior.dofs().len() + 1);
@@ -251,13 +252,13 @@ impl Refiner {
     /// As of [`refine`](Self::refine).
     pub fn refine_best(
         &self,
-        evidence: &[Evidence],
+        evidence: &[SilhouetteObservation],
         estimate: &Estimate,
         hypotheses: &[Hypothesis],
-    ) -> Result<Vec<Refined>> {
+    ) -> Result<Vec<PoseFit>> {
         if evidence.len() > 1 || hypotheses.is_empty() {
             let refined = self.refine(evidence, estimate)?;
-            if hypotheses.is_empty() || refined.border_px <= apart(&refined, estimate) {
+            if hypotheses.is_empty() || refined.boundary_rms_px <= apart(&refined, estimate) {
                 return Ok(vec![refined]);
             }
             // Palm and arm tell where the hand is, whatever the fingers do.
@@ -276,9 +277,13 @@ impl Refiner {
     ///
     /// # Errors
     /// No evidence, or a hand that a camera cannot draw.
-    pub fn refine(&self, evidence: &[Evidence], estimate: &Estimate) -> Result<Refined> {
+    pub fn refine(
+        &self,
+        evidence: &[SilhouetteObservation],
+        estimate: &Estimate,
+    ) -> Result<PoseFit> {
         let prior = self.prior(&estimate.pose, &estimate.std)?;
         let start = prior.mean();
-        Ok(self.refinement.run(&self.hand, &self.rest, evidence, start, &prior)?)
+        Ok(self.refinement.fit(&self.hand, &self.rest, evidence, start, &prior)?)
     }
 }

@@ -1,7 +1,7 @@
 //! Refining several hypotheses, and naming the poses that stand for all that came out.
 
 use phalanx_hand::{Dof, Pose, Unit};
-use phalanx_refine::{Evidence, Refined, Refinement};
+use phalanx_refine::{PoseFit, PoseFitSettings, SilhouetteObservation};
 
 use crate::{Estimate, Hypothesis, Refiner, Result};
 
@@ -28,16 +28,16 @@ impl Refiner {
     /// believed first.
     ///
     /// They are those of which the nearest is least far from a pose drawn by how well each
-    /// [explains](Refined::energy) the silhouettes. Hand and cameras are doubted, if at all, in these.
+    /// [explains](PoseFit::energy) the silhouettes. Hand and cameras are doubted, if at all, in these.
     ///
     /// # Errors
     /// As of [`refine`](Self::refine).
     pub fn refine_hypotheses(
         &self,
-        evidence: &[Evidence],
+        evidence: &[SilhouetteObservation],
         estimate: &Estimate,
         hypotheses: &[Hypothesis],
-    ) -> Result<Vec<Refined>> {
+    ) -> Result<Vec<PoseFit>> {
         let refine = |refiner: &Self, hypothesis: &Hypothesis| {
             let spread = |dof: usize| {
                 let least = LEAST_SPREAD * estimate.std[dof]?;
@@ -46,12 +46,14 @@ impl Refiner {
             let std = std::array::from_fn(spread);
             refiner.refine(evidence, &Estimate { pose: hypothesis.pose, std, ..estimate.clone() })
         };
-        let certain = self.with_refinement(Refinement { doubt: None, ..self.refinement().clone() });
+        let certain =
+            self.with_refinement(PoseFitSettings { nuisance: None, ..self.refinement().clone() });
         let all = hypotheses.iter().map(|hypothesis| refine(&certain, hypothesis));
         let all = all.collect::<Result<Vec<_>>>()?;
-        let beyond = self.refinement().doubt.map_or(f64::INFINITY, |doubt| doubt.beyond);
+        let beyond =
+            self.refinement().nuisance.map_or(f64::INFINITY, |nuisance| nuisance.above_rms_px);
         let doubted = |&k: &usize| match &all[k] {
-            refined if refined.border_px > beyond => refine(self, &hypotheses[k]),
+            refined if refined.boundary_rms_px > beyond => refine(self, &hypotheses[k]),
             refined => Ok(refined.clone()),
         };
         let some = representatives(&all).iter().map(doubted).collect::<Result<Vec<_>>>()?;
@@ -60,9 +62,9 @@ impl Refiner {
 }
 
 /// The numbers of those refined poses that stand for all, the one that does so best first.
-fn representatives(refined: &[Refined]) -> Vec<usize> {
+fn representatives(refined: &[PoseFit]) -> Vec<usize> {
     let least = refined.iter().map(|refined| refined.energy).fold(f64::INFINITY, f64::min);
-    let chance = |refined: &Refined| ((least - refined.energy) / OVERSTATED).exp();
+    let chance = |refined: &PoseFit| ((least - refined.energy) / OVERSTATED).exp();
     let mut apart = vec![f64::INFINITY; refined.len()];
     let mut chosen = Vec::new();
     while chosen.len() < Refiner::POSES.min(refined.len()) {

@@ -12,7 +12,7 @@ use phalanx::{
 use phalanx_camera::{Camera, Distortion, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_multiview::Vocabulary;
-use phalanx_refine::{PosePrior, Refinement};
+use phalanx_refine::{PoseFitSettings, PosePrior};
 use phalanx_render::Renderer;
 use phalanx_segmentation::{LocatedHand, Silhouette};
 use proptest::prelude::*;
@@ -188,7 +188,7 @@ fn hands_are_placed_and_refined_where_they_are() {
     let (rig, hand) = (rig(), HandShape::adult());
     let estimator =
         training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
-    let refiner = Refiner::for_estimator(&estimator, Refinement::default()).unwrap();
+    let refiner = Refiner::for_estimator(&estimator, PoseFitSettings::default()).unwrap();
     let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
     let mut workspace = Workspace::default();
     for (k, mut pose) in unseen().into_iter().enumerate() {
@@ -204,7 +204,7 @@ fn hands_are_placed_and_refined_where_they_are() {
         let evidence = refiner.evidence_of(&estimate.observation).unwrap();
         let refined = refiner.refine(&evidence, &estimate).unwrap();
         assert!(off(&refined.pose, &pose) < 5.0, "{} mm", off(&refined.pose, &pose));
-        assert!(refined.overlaps.iter().all(|&overlap| overlap > 0.9), "{:?}", refined.overlaps);
+        assert!(refined.ious.iter().all(|&iou| iou > 0.9), "{:?}", refined.ious);
     }
 }
 
@@ -287,7 +287,7 @@ fn what_is_beyond_the_picture_is_not_known() {
     let (window, silhouette) = look(camera, &seen);
     let evidence = [window.evidence(&silhouette).unwrap()];
     let prior = PosePrior::independent(pose, &[0.3; Dof::COUNT]).unwrap();
-    let refined = Refinement::default().run(&hand, &rest, &evidence, &pose, &prior).unwrap();
+    let refined = PoseFitSettings::default().fit(&hand, &rest, &evidence, &pose, &prior).unwrap();
     let bent: f64 = Digit::FINGERS
         .into_iter()
         .flat_map(|digit| digit.dofs()[1..].to_vec())

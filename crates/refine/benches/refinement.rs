@@ -3,7 +3,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
-use phalanx_refine::{Evidence, PosePrior, Refinement};
+use phalanx_refine::{PoseFitSettings, PosePrior, SilhouetteObservation};
 use phalanx_render::Renderer;
 use std::hint::black_box;
 
@@ -16,14 +16,18 @@ fn refinement(c: &mut Criterion) {
         truth[dof] = 0.15 * (k % 4) as f64;
         deviations[dof.index()] = 0.2;
     }
-    let solids = hand.pose(&truth, &rest).primitives;
+    let primitives = hand.pose(&truth, &rest).primitives;
     let masks: Vec<_> = rig
         .cameras
         .iter()
-        .map(|camera| Renderer::new(camera).unwrap().silhouette(&solids).unwrap())
+        .map(|camera| Renderer::new(camera).unwrap().silhouette(&primitives).unwrap())
         .collect();
-    let see = || -> Vec<Evidence> {
-        rig.cameras.iter().zip(&masks).map(|(c, mask)| Evidence::new(c, mask).unwrap()).collect()
+    let see = || -> Vec<SilhouetteObservation> {
+        rig.cameras
+            .iter()
+            .zip(&masks)
+            .map(|(c, mask)| SilhouetteObservation::new(c, mask).unwrap())
+            .collect()
     };
     let mut start = truth;
     for (k, dof) in Dof::ALL.into_iter().filter(|dof| dof.is_internal()).enumerate() {
@@ -31,10 +35,10 @@ fn refinement(c: &mut Criterion) {
     }
     let prior = PosePrior::independent(start, &deviations).unwrap();
     let evidence = see();
-    let refinement = Refinement::default();
+    let refinement = PoseFitSettings::default();
     c.bench_function("evidence of three 120x90 silhouettes", |b| b.iter(see));
     c.bench_function("refine three 120x90 silhouettes", |b| {
-        b.iter(|| refinement.run(&hand, &rest, black_box(&evidence), &start, &prior).unwrap());
+        b.iter(|| refinement.fit(&hand, &rest, black_box(&evidence), &start, &prior).unwrap());
     });
 }
 

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use image::GrayImage;
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
-use phalanx_refine::{Evidence, PosePrior, Refinement};
+use phalanx_refine::{PoseFitSettings, PosePrior, SilhouetteObservation};
 use phalanx_render::Renderer;
 
 /// What is both observed and drawn, only observed, only drawn.
@@ -17,8 +17,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rig = Rig::from_toml(include_str!("../fixtures/desk.toml"))?;
     let (hand, rest) = (HandShape::adult(), rig.volume.rest_frame());
     let draw = |pose: &Pose| -> Result<Vec<GrayImage>, Box<dyn Error>> {
-        let solids = hand.pose(pose, &rest).primitives;
-        let view = |camera| Ok(Renderer::new(camera)?.silhouette(&solids)?);
+        let primitives = hand.pose(pose, &rest).primitives;
+        let view = |camera| Ok(Renderer::new(camera)?.silhouette(&primitives)?);
         rig.cameras.iter().map(view).collect()
     };
     let truth = bent([0.2, 0.3, 0.9, 1.2, 0.5], 0.9);
@@ -26,14 +26,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let observed = draw(&truth)?;
 
     let views = rig.cameras.iter().zip(&observed);
-    let evidence: Vec<Evidence> =
-        views.map(|(camera, mask)| Evidence::new(camera, mask)).collect::<Result<_, _>>()?;
+    let evidence: Vec<SilhouetteObservation> = views
+        .map(|(camera, mask)| SilhouetteObservation::new(camera, mask))
+        .collect::<Result<_, _>>()?;
     let mut deviations = [0.3; Dof::COUNT];
     for dof in [Dof::TX, Dof::TY, Dof::TZ, Dof::ThetaX, Dof::ThetaY] {
         deviations[dof.index()] = 0.0; // known
     }
     let prior = PosePrior::independent(guess, &deviations)?;
-    let refined = Refinement::default().run(&hand, &rest, &evidence, &guess, &prior)?;
+    let refined = PoseFitSettings::default().fit(&hand, &rest, &evidence, &guess, &prior)?;
 
     let (width, height) = observed[0].dimensions();
     println!(

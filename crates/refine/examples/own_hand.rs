@@ -5,7 +5,7 @@ use std::error::Error;
 
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
-use phalanx_refine::{Calibration, CalibrationFrame, Evidence, PosePrior};
+use phalanx_refine::{BundleAdjustment, BundleFrame, PosePrior, SilhouetteObservation};
 use phalanx_render::Renderer;
 
 const FRAMES: u32 = 12;
@@ -26,17 +26,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut frames = Vec::new();
     for frame in 0..FRAMES {
         let truth = moving(f64::from(frame), 0.0);
-        let solids = own.pose(&truth, &rest).primitives;
+        let primitives = own.pose(&truth, &rest).primitives;
         let mut evidence = Vec::new();
         for camera in &rig.cameras {
-            let mask = Renderer::new(camera)?.silhouette(&solids)?;
-            evidence.push(Evidence::new(camera, &mask)?);
+            let mask = Renderer::new(camera)?.silhouette(&primitives)?;
+            evidence.push(SilhouetteObservation::new(camera, &mask)?);
         }
         let start = moving(f64::from(frame), 0.1); // an estimate, not quite right
         let prior = PosePrior::independent(start, &deviations)?;
-        frames.push(CalibrationFrame { evidence, start, prior });
+        frames.push(BundleFrame { observations: evidence, start, prior });
     }
-    let found = Calibration::default().run(&mean, &rest, &frames)?;
+    let found = BundleAdjustment::default().run(&mean, &rest, &frames)?;
 
     println!("length of each finger, mm   mean hand   found   true");
     let length = |hand: &HandShape, k: usize| hand.fingers()[k].lengths_mm.iter().sum::<f64>();

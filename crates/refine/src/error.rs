@@ -29,14 +29,14 @@ pub enum Error {
         expected: (u32, u32),
     },
     /// A silhouette that is all hand or all background.
-    #[error("camera {camera}: the silhouette has no border between hand and background")]
-    NoBorder {
+    #[error("camera {camera}: the silhouette has no boundary between hand and background")]
+    NoBoundary {
         /// The camera.
         camera: String,
     },
     /// Nothing to fit to.
     #[error("no silhouette to fit to")]
-    NoEvidence,
+    NoObservation,
     /// A number that is not finite.
     #[error("{what} {name} is {value}")]
     NotFinite {

@@ -5,9 +5,9 @@ use image::GrayImage;
 use phalanx_hand::{Digit, Dof, HandShape, Link, Pose, PosedHand, Primitive};
 
 use crate::error::{Error, Result};
-use crate::geometry::correspondence::View;
+use crate::geometry::correspondence::ViewMatcher;
 use crate::geometry::self_collision;
-use crate::observation::silhouette::Evidence;
+use crate::observation::silhouette::SilhouetteObservation;
 use crate::priors::pose::PosePrior;
 
 /// Places in the range of each of a digit's first two flexions that are tried.
@@ -32,11 +32,11 @@ const PIXEL: f64 = 1.0;
 pub(crate) struct Search<'a> {
     pub(crate) hand: &'a HandShape,
     pub(crate) rest: &'a DAffine3,
-    pub(crate) evidence: &'a [Evidence],
+    pub(crate) evidence: &'a [SilhouetteObservation],
     pub(crate) prior: &'a PosePrior,
     /// How the hand seems moved in each view.
     pub(crate) motions: &'a [DAffine3],
-    pub(crate) views: &'a mut [View],
+    pub(crate) views: &'a mut [ViewMatcher],
 }
 
 /// What a search came to.
@@ -160,7 +160,7 @@ impl Search<'_> {
     fn drawn(&mut self, digit: Digit, pose: &Pose) -> Result<Vec<Drawn>> {
         let mut drawn = Vec::with_capacity(PLACES * PLACES);
         'postures: for (places, pose) in self.postures(digit, pose) {
-            let own = solids(&self.hand.pose(&pose, self.rest), &[digit], Part::Digits);
+            let own = primitives(&self.hand.pose(&pose, self.rest), &[digit], Part::Digits);
             let mut images = vec![GrayImage::default(); self.views.len()];
             let mut outside = 0;
             for (v, image) in images.iter_mut().enumerate() {
@@ -221,7 +221,7 @@ impl Search<'_> {
 
     fn background(&mut self, pose: &Pose, digits: &[Digit]) -> Result<Background> {
         let posed = self.hand.pose(pose, self.rest);
-        let others: Vec<Primitive> = solids(&posed, digits, Part::Others);
+        let others: Vec<Primitive> = primitives(&posed, digits, Part::Others);
         let mut drawn = vec![GrayImage::default(); self.views.len()];
         for (v, image) in drawn.iter_mut().enumerate() {
             self.draw(v, &others, image)?;
@@ -243,7 +243,7 @@ impl Search<'_> {
         background: &mut Background,
     ) -> Result<Option<f64>> {
         let posed = self.hand.pose(pose, self.rest);
-        let own = solids(&posed, &background.digits, Part::Digits);
+        let own = primitives(&posed, &background.digits, Part::Digits);
         let mut cost = self.prior.energy(pose) + self_collision::energy(&posed);
         for (v, other) in background.drawn.iter().enumerate() {
             if cost >= limit {
@@ -258,20 +258,20 @@ impl Search<'_> {
         Ok((cost < limit).then_some(cost))
     }
 
-    fn draw(&mut self, view: usize, solids: &[Primitive], image: &mut GrayImage) -> Result<()> {
+    fn draw(&mut self, view: usize, primitives: &[Primitive], image: &mut GrayImage) -> Result<()> {
         let moved: Vec<Primitive> =
-            solids.iter().map(|solid| solid.moved(&self.motions[view])).collect();
+            primitives.iter().map(|primitive| primitive.moved(&self.motions[view])).collect();
         self.views[view].draw(&moved, &self.evidence[view], image)
     }
 
-    /// Whether the view's camera can draw solids; draws them if so.
+    /// Whether the view's camera can draw primitives; draws them if so.
     fn can_draw(
         &mut self,
         view: usize,
-        solids: &[Primitive],
+        primitives: &[Primitive],
         image: &mut GrayImage,
     ) -> Result<bool> {
-        match self.draw(view, solids, image) {
+        match self.draw(view, primitives, image) {
             Ok(()) => Ok(true),
             Err(Error::Render { .. }) => Ok(false),
             Err(error) => Err(error),
@@ -285,17 +285,17 @@ enum Part {
     Others,
 }
 
-/// The solids that move with some digits, or all others.
-fn solids(posed: &PosedHand, digits: &[Digit], part: Part) -> Vec<Primitive> {
+/// The primitives that move with some digits, or all others.
+fn primitives(posed: &PosedHand, digits: &[Digit], part: Part) -> Vec<Primitive> {
     let moves = |link: &Link| matches!(link, Link::Segment(digit, _) if digits.contains(digit));
     let all = posed.primitives.iter().zip(&posed.links);
     all.filter(|(_, links)| links.iter().any(moves) == (part == Part::Digits))
-        .map(|(solid, _)| *solid)
+        .map(|(primitive, _)| *primitive)
         .collect()
 }
 
 /// How many of the known pixels of the union of three masks differ from what was seen.
-fn difference([a, b, c]: [&GrayImage; 3], seen: &Evidence) -> u32 {
+fn difference([a, b, c]: [&GrayImage; 3], seen: &SilhouetteObservation) -> u32 {
     // So few at a time that a byte can count them.
     const COUNTED: usize = 240;
     let layers = a.chunks(COUNTED).zip(b.chunks(COUNTED)).zip(c.chunks(COUNTED));

@@ -7,7 +7,8 @@ use image::GrayImage;
 use phalanx_camera::{Camera, Intrinsics, Rig};
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::{
-    Calibration, CalibrationFrame, Doubt, Error, Evidence, Level, PosePrior, Refinement,
+    BundleAdjustment, BundleFrame, Error, Level, NuisanceParameters, PoseFitSettings, PosePrior,
+    SilhouetteObservation,
 };
 use phalanx_render::Renderer;
 use proptest::prelude::*;
@@ -18,13 +19,13 @@ fn rig() -> Rig {
     Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap()
 }
 
-fn see(rig: &Rig, hand: &HandShape, pose: &Pose, rest: &DAffine3) -> Vec<Evidence> {
-    let solids = hand.pose(pose, rest).primitives;
+fn see(rig: &Rig, hand: &HandShape, pose: &Pose, rest: &DAffine3) -> Vec<SilhouetteObservation> {
+    let primitives = hand.pose(pose, rest).primitives;
     rig.cameras
         .iter()
         .map(|camera| {
-            let mask = Renderer::new(camera).unwrap().silhouette(&solids).unwrap();
-            Evidence::new(camera, &mask).unwrap()
+            let mask = Renderer::new(camera).unwrap().silhouette(&primitives).unwrap();
+            SilhouetteObservation::new(camera, &mask).unwrap()
         })
         .collect()
 }
@@ -75,20 +76,20 @@ fn beside() -> impl Strategy<Value = Beside> {
 
 /// The energy of a pose as the last level has it, no step taken.
 fn energy_of(
-    refinement: &Refinement,
+    refinement: &PoseFitSettings,
     hand: &HandShape,
-    evidence: &[Evidence],
+    evidence: &[SilhouetteObservation],
     pose: &Pose,
     prior: &PosePrior,
 ) -> f64 {
     let finest = *refinement.levels.last().unwrap();
-    let stay = Refinement {
+    let stay = PoseFitSettings {
         levels: vec![Level { steps: 0, ..finest }],
-        retries: 0,
-        doubt: None,
+        max_restarts: 0,
+        nuisance: None,
         ..refinement.clone()
     };
-    stay.run(hand, &rig().volume.rest_frame(), evidence, pose, prior).unwrap().energy
+    stay.fit(hand, &rig().volume.rest_frame(), evidence, pose, prior).unwrap().energy
 }
 
 /// For all that rounding does.
@@ -109,25 +110,25 @@ proptest! {
         let mut factors = factors.into_iter().cycle();
         let own = hand.varied(|| 1.0 + spread * factors.next().unwrap());
         let evidence = see(&rig, &own, &truth, &rest);
-        let trusting = Refinement::default();
-        let doubting = Refinement { doubt: Some(Doubt::default()), ..trusting.clone() };
+        let trusting = PoseFitSettings::default();
+        let with_nuisance = PoseFitSettings { nuisance: Some(NuisanceParameters::default()), ..trusting.clone() };
         let prior = prior(start);
         let energy_of = |pose: &Pose| energy_of(&trusting, &hand, &evidence, pose, &prior);
-        let run = |refinement: &Refinement, start: &Pose| {
-            refinement.run(&hand, &rest, &evidence, start, &prior).unwrap()
+        let run = |refinement: &PoseFitSettings, start: &Pose| {
+            refinement.fit(&hand, &rest, &evidence, start, &prior).unwrap()
         };
         let refined = run(&trusting, &start);
         prop_assert!(refined.energy <= energy_of(&start) * ROUNDING);
         let found = energy_of(&refined.pose);
         prop_assert!(refined.energy <= found * ROUNDING && found <= refined.energy * ROUNDING);
-        prop_assert!(spread > 0.0 || refined.overlaps.iter().all(|&overlap| overlap > 0.95));
+        prop_assert!(spread > 0.0 || refined.ious.iter().all(|&iou| iou > 0.95));
         let again = run(&trusting, &refined.pose);
         prop_assert!(again.energy <= refined.energy * ROUNDING);
         prop_assert!(again.pose == refined.pose || again.energy < 0.995 * refined.energy * ROUNDING);
-        let doubted = run(&doubting, &start);
-        prop_assert!(doubted.energy <= refined.energy * ROUNDING);
-        let again = run(&doubting, &doubted.pose);
-        prop_assert!(again.energy <= energy_of(&doubted.pose) * ROUNDING);
+        let nuisance_fitted = run(&with_nuisance, &start);
+        prop_assert!(nuisance_fitted.energy <= refined.energy * ROUNDING);
+        let again = run(&with_nuisance, &nuisance_fitted.pose);
+        prop_assert!(again.energy <= energy_of(&nuisance_fitted.pose) * ROUNDING);
     }
 }
 
@@ -140,7 +141,8 @@ fn poses_are_found_again() {
     let mut errors_deg: Vec<f64> = std::iter::repeat_with(|| {
         let Beside { truth, start } = beside().new_tree(&mut runner).unwrap().current();
         let evidence = see(&rig, &hand, &truth, &rest);
-        let refined = Refinement::default().run(&hand, &rest, &evidence, &start, &prior(start));
+        let refined =
+            PoseFitSettings::default().fit(&hand, &rest, &evidence, &start, &prior(start));
         mean_error_deg(&refined.unwrap().pose, &truth)
     })
     .take(40)
@@ -173,7 +175,7 @@ proptest! {
             deviations[turns[k].index()] = 3.0;
         }
         let prior = PosePrior::independent(start, &deviations).unwrap();
-        let refined = Refinement::default().run(&hand, &rest, &evidence[..1], &start, &prior);
+        let refined = PoseFitSettings::default().fit(&hand, &rest, &evidence[..1], &start, &prior);
         prop_assert!(refined.is_ok(), "{refined:?}");
     }
 }
@@ -187,8 +189,8 @@ fn an_arm_that_reaches_past_a_camera_is_fitted() {
     let above = Camera::look_at("elbow", inside, position, target, DVec3::Y).unwrap();
     let rest = rig.volume.rest_frame();
     let truth = hand_bent_by([0.3, 0.5, 0.4, 0.6, 0.3], 0.6);
-    let solids = hand.pose(&truth, &rest).primitives;
-    let depths = solids.iter().flat_map(|solid| solid.balls().to_vec());
+    let primitives = hand.pose(&truth, &rest).primitives;
+    let depths = primitives.iter().flat_map(|primitive| primitive.balls().to_vec());
     let nearest = depths.map(|ball| above.extrinsics.to_camera(ball.center).z - ball.radius);
     assert!(nearest.fold(f64::INFINITY, f64::min) < 0.0, "the arm ends behind the camera");
     rig.cameras = vec![rig.cameras[1].clone(), above];
@@ -196,8 +198,8 @@ fn an_arm_that_reaches_past_a_camera_is_fitted() {
     let mut start = truth;
     start.0[..20].iter_mut().enumerate().for_each(|(k, angle)| *angle += 0.1 * (k as f64).sin());
     let refined =
-        Refinement::default().run(&hand, &rest, &evidence, &start, &prior(start)).unwrap();
-    assert!(refined.overlaps.iter().all(|&overlap| overlap > 0.96), "{:?}", refined.overlaps);
+        PoseFitSettings::default().fit(&hand, &rest, &evidence, &start, &prior(start)).unwrap();
+    assert!(refined.ious.iter().all(|&iou| iou > 0.96), "{:?}", refined.ious);
     let (before, after) = (mean_error_deg(&start, &truth), mean_error_deg(&refined.pose, &truth));
     assert!(after < 0.5 * before, "{before}° becomes {after}°");
 }
@@ -213,10 +215,10 @@ fn what_is_not_known_has_no_say() {
     let rest = rig.volume.rest_frame();
     let truth = hand_bent_by([0.3, 0.5, 0.4, 0.6, 0.3], 0.6);
     let whole = see(&rig, &hand, &truth, &rest);
-    let cut = |tells: fn(&Camera, &GrayImage, f64) -> Evidence| -> Vec<Evidence> {
+    let cut = |tells: fn(&Camera, &GrayImage, f64) -> SilhouetteObservation| -> Vec<SilhouetteObservation> {
         // The fingers reach beyond this share of the first picture.
         let shares = [0.55, 1.0, 1.0];
-        let cut = |(seen, share): (&Evidence, f64)| {
+        let cut = |(seen, share): (&SilhouetteObservation, f64)| {
             let known = is_left_of(share, seen.mask().width());
             let mut mask = seen.mask().clone();
             for (x, y, pixel) in mask.enumerate_pixels_mut() {
@@ -228,17 +230,18 @@ fn what_is_not_known_has_no_say() {
         };
         whole.iter().zip(shares).map(cut).collect()
     };
-    let taken_at_its_word = cut(|camera, mask, _| Evidence::new(camera, mask).unwrap());
+    let taken_at_its_word =
+        cut(|camera, mask, _| SilhouetteObservation::new(camera, mask).unwrap());
     let known_in_part = cut(|camera, mask, share| {
-        Evidence::within(camera, mask, is_left_of(share, mask.width())).unwrap()
+        SilhouetteObservation::within(camera, mask, is_left_of(share, mask.width())).unwrap()
     });
-    let run = |evidence: &[Evidence]| {
-        Refinement::default().run(&hand, &rest, evidence, &truth, &prior(truth)).unwrap()
+    let run = |evidence: &[SilhouetteObservation]| {
+        PoseFitSettings::default().fit(&hand, &rest, evidence, &truth, &prior(truth)).unwrap()
     };
     let (misled, refined) = (run(&taken_at_its_word), run(&known_in_part));
     assert!(mean_error_deg(&refined.pose, &truth) < 1.5);
-    assert!(refined.overlaps[0] > 0.97, "{:?}", refined.overlaps);
-    assert!(misled.overlaps[0] < 0.95 && misled.border_px > 1.5 * refined.border_px);
+    assert!(refined.ious[0] > 0.97, "{:?}", refined.ious);
+    assert!(misled.ious[0] < 0.95 && misled.boundary_rms_px > 1.5 * refined.boundary_rms_px);
 }
 
 #[test]
@@ -249,14 +252,15 @@ fn a_strange_hand_is_doubted_and_then_fits() {
     let own = given.varied(|| 1.1);
     let truth = hand_bent_by([0.3, 0.5, 0.4, 0.6, 0.3], 0.6);
     let evidence = see(&rig, &own, &truth, &rest);
-    let trusting = Refinement::default();
-    let doubting = Refinement { doubt: Some(Doubt::default()), ..trusting.clone() };
-    let run = |refinement: &Refinement| {
-        refinement.run(&given, &rest, &evidence, &truth, &prior(truth)).unwrap()
+    let trusting = PoseFitSettings::default();
+    let with_nuisance =
+        PoseFitSettings { nuisance: Some(NuisanceParameters::default()), ..trusting.clone() };
+    let run = |refinement: &PoseFitSettings| {
+        refinement.fit(&given, &rest, &evidence, &truth, &prior(truth)).unwrap()
     };
-    let (trusted, doubted) = (run(&trusting), run(&doubting));
-    assert!(!trusted.doubted && doubted.doubted);
-    assert!(doubted.border_px < trusted.border_px);
+    let (trusted, nuisance_fitted) = (run(&trusting), run(&with_nuisance));
+    assert!(!trusted.nuisance_fitted && nuisance_fitted.nuisance_fitted);
+    assert!(nuisance_fitted.boundary_rms_px < trusted.boundary_rms_px);
 }
 
 #[test]
@@ -265,23 +269,23 @@ fn a_hand_is_calibrated_from_several_frames() {
     let rest = rig.volume.rest_frame();
     let given = HandShape::adult();
     let own = given.varied(|| 1.06);
-    let frames: Vec<CalibrationFrame> = (0..6)
+    let frames: Vec<BundleFrame> = (0..6)
         .map(|k| {
             let bend = 0.15 * f64::from(k);
             let pose = hand_bent_by([0.3, bend, 0.9 - bend, 0.5, bend], 0.2 * f64::from(k));
-            CalibrationFrame {
-                evidence: see(&rig, &own, &pose, &rest),
+            BundleFrame {
+                observations: see(&rig, &own, &pose, &rest),
                 start: pose,
                 prior: prior(pose),
             }
         })
         .collect();
-    let calibrated = Calibration::default().run(&given, &rest, &frames).unwrap();
+    let calibrated = BundleAdjustment::default().run(&given, &rest, &frames).unwrap();
     let length =
         |hand: &HandShape| hand.middle.base_mm.z + hand.middle.lengths_mm.iter().sum::<f64>();
     let (found, truth) = (length(&calibrated.hand), length(&own));
     assert!((found / truth - 1.0).abs() < 0.015, "{found} mm is not {truth} mm");
-    assert!(calibrated.overlaps.iter().flatten().all(|&overlap| overlap > 0.95));
+    assert!(calibrated.ious.iter().flatten().all(|&iou| iou > 0.95));
     calibrated.hand.validate().unwrap();
 }
 
@@ -290,19 +294,20 @@ fn what_cannot_be_fitted_is_named() {
     let (rig, hand) = (rig(), HandShape::adult());
     let rest = rig.volume.rest_frame();
     let camera = &rig.cameras[0];
-    let size = |width, height| Evidence::new(camera, &image::GrayImage::new(width, height));
+    let size =
+        |width, height| SilhouetteObservation::new(camera, &image::GrayImage::new(width, height));
     assert!(matches!(size(60, 45).unwrap_err(), Error::MaskSize { found: (60, 45), .. }));
-    assert!(matches!(size(120, 90).unwrap_err(), Error::NoBorder { .. }));
-    let refinement = Refinement::default();
-    let none = refinement.run(&hand, &rest, &[], &Pose::REST, &prior(Pose::REST));
-    assert!(matches!(none.unwrap_err(), Error::NoEvidence));
+    assert!(matches!(size(120, 90).unwrap_err(), Error::NoBoundary { .. }));
+    let refinement = PoseFitSettings::default();
+    let none = refinement.fit(&hand, &rest, &[], &Pose::REST, &prior(Pose::REST));
+    assert!(matches!(none.unwrap_err(), Error::NoObservation));
     let evidence = see(&rig, &hand, &Pose::REST, &rest);
     for wrong in [
-        Refinement { levels: Vec::new(), ..refinement.clone() },
-        Refinement { noise: 0.0, ..refinement.clone() },
-        Refinement { margin: f64::NAN, ..refinement.clone() },
+        PoseFitSettings { levels: Vec::new(), ..refinement.clone() },
+        PoseFitSettings { noise: 0.0, ..refinement.clone() },
+        PoseFitSettings { margin: f64::NAN, ..refinement.clone() },
     ] {
-        let refused = wrong.run(&hand, &rest, &evidence, &Pose::REST, &prior(Pose::REST));
+        let refused = wrong.fit(&hand, &rest, &evidence, &Pose::REST, &prior(Pose::REST));
         assert!(matches!(refused.unwrap_err(), Error::Parameter { .. }));
     }
     let mut mean = Pose::REST;
@@ -319,7 +324,7 @@ fn a_prior_of_poses_knows_how_they_vary() {
     assert!(!postures.dofs().contains(&Dof::IndexAbduction));
     assert!(postures.dofs().contains(&Dof::ThetaZ));
     let estimate = PosePrior::independent(hand_bent_by([0.5; 5], 0.2), &[0.3; Dof::COUNT]).unwrap();
-    let both = estimate.and(&postures).unwrap();
+    let both = estimate.product(&postures).unwrap();
     assert_eq!(both.dofs(), estimate.dofs());
     let (low, high) = (postures.mean()[Dof::IndexPip], estimate.mean()[Dof::IndexPip]);
     let between = both.mean()[Dof::IndexPip];

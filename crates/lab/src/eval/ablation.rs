@@ -7,7 +7,7 @@ use phalanx::{
     Encoding, Estimator, Framing, OrientationRule, Preset, Progress, RegressorConfig, Training,
 };
 use phalanx_hand::Pose;
-use phalanx_refine::{Doubt, Refinement};
+use phalanx_refine::{NuisanceParameters, PoseFitSettings};
 
 use crate::data::sets::{self, Augment, Set, Test};
 use crate::eval::held_out::Ground;
@@ -98,17 +98,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
 fn refinings() -> Vec<(&'static str, Refining)> {
     let whole = Refining::whole();
     let Refining { refinement, .. } = &whole;
-    let with = |refinement: Refinement| Refining { refinement, ..whole.clone() };
-    let no_cameras = refinement.doubt.map(|doubt| Doubt { cameras: None, ..doubt });
+    let with = |refinement: PoseFitSettings| Refining { refinement, ..whole.clone() };
+    let no_cameras =
+        refinement.nuisance.map(|nuisance| NuisanceParameters { cameras: None, ..nuisance });
     let one_level = refinement.levels.last().copied().into_iter().collect();
     vec![
         ("the hand calibrated", Refining { hand: Hand::Calibrated, ..whole.clone() }),
         ("one hypothesis", Refining { starts: Starts::Estimate, ..whole.clone() }),
-        ("no search of postures", with(Refinement { retries: 0, ..refinement.clone() })),
-        ("no doubt of hand or cameras", with(Refinement { doubt: None, ..refinement.clone() })),
-        ("no doubt of the cameras", with(Refinement { doubt: no_cameras, ..refinement.clone() })),
-        ("no margins", with(Refinement { margin: 1e-3, ..refinement.clone() })),
-        ("at once fine", with(Refinement { levels: one_level, ..refinement.clone() })),
+        ("no search of postures", with(PoseFitSettings { max_restarts: 0, ..refinement.clone() })),
+        (
+            "no doubt of hand or cameras",
+            with(PoseFitSettings { nuisance: None, ..refinement.clone() }),
+        ),
+        (
+            "no doubt of the cameras",
+            with(PoseFitSettings { nuisance: no_cameras, ..refinement.clone() }),
+        ),
+        ("no margins", with(PoseFitSettings { margin: 1e-3, ..refinement.clone() })),
+        ("at once fine", with(PoseFitSettings { levels: one_level, ..refinement.clone() })),
     ]
 }
 

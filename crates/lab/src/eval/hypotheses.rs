@@ -10,7 +10,7 @@ use phalanx::{
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
-use phalanx_refine::Refinement;
+use phalanx_refine::PoseFitSettings;
 use phalanx_rvm::{ResidualKde, StandardScaler};
 use rayon::prelude::*;
 
@@ -112,7 +112,7 @@ fn answers(
     let train = sets::random(rig, hand, PRESET.scenes(), Augment::No);
     let fresh = sets::fresh(rig, hand, ERROR_SCENES, Augment::No);
     let estimator = trained(&PRESET.training(), &train, Some(&fresh), progress)?.estimator;
-    let refiner = Refiner::new(rig, hand, &fresh.poses, Refinement::default())?;
+    let refiner = Refiner::new(rig, hand, &fresh.poses, PoseFitSettings::default())?;
     let [nearest, middles] = from_neighbours(&estimator, &train, questions, progress)?;
     let found = hypotheses(&estimator, &refiner, questions, progress)?;
     let all = |which: fn(&Found) -> &Vec<Pose>| found.iter().map(which).cloned().collect();

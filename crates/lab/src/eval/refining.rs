@@ -5,7 +5,7 @@ use phalanx::{
     Estimate, Estimator, Framing, Picture, Progress, SceneDescriber, SceneSource, Workspace,
 };
 use phalanx_hand::Pose;
-use phalanx_refine::{Doubt, Refinement};
+use phalanx_refine::{NuisanceParameters, PoseFitSettings};
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
@@ -17,7 +17,7 @@ use crate::eval::held_out::refined::{self, Starts};
 /// How estimates are refined.
 #[derive(Clone)]
 pub(crate) struct Refining {
-    pub(crate) refinement: Refinement,
+    pub(crate) refinement: PoseFitSettings,
     pub(crate) starts: Starts,
     pub(crate) believed: Believed,
     pub(crate) hand: Hand,
@@ -53,7 +53,10 @@ impl Refining {
     /// With the mean hand, all that there is switched on.
     pub(crate) fn whole() -> Self {
         Self {
-            refinement: Refinement { doubt: Some(Doubt::default()), ..Refinement::default() },
+            refinement: PoseFitSettings {
+                nuisance: Some(NuisanceParameters::default()),
+                ..PoseFitSettings::default()
+            },
             starts: Starts::Hypotheses,
             believed: Believed::Estimate,
             hand: Hand::Mean,

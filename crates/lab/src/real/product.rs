@@ -9,7 +9,7 @@ use phalanx::{
 };
 use phalanx_camera::{Rig, Volume};
 use phalanx_hand::HandShape;
-use phalanx_refine::{Doubt, Refined, Refinement};
+use phalanx_refine::{NuisanceParameters, PoseFit, PoseFitSettings};
 use phalanx_segmentation::{Evidence, SkinModel};
 
 use super::deviation::PoseCovariance;
@@ -42,7 +42,10 @@ impl Product {
         let hand = HandShape { side: take.side, ..HandShape::adult() };
         let trainer = Trainer::preset(Preset::Fast).framing(Framing::Window);
         let estimator = trainer.fit(&rig, &hand, progress)?;
-        let refinement = Refinement { doubt: Some(Doubt::default()), ..Refinement::default() };
+        let refinement = PoseFitSettings {
+            nuisance: Some(NuisanceParameters::default()),
+            ..PoseFitSettings::default()
+        };
         let refiner = Refiner::for_estimator(&estimator, refinement)?;
         Ok(Self { estimator, refiner, skin: Segmenter::Skin(SkinModel::builtin()) })
     }
@@ -91,8 +94,8 @@ fn forearm_doubts(estimate: &Estimate) -> Vec<String> {
 }
 
 /// What `phalanx estimate --refine` says of a fit.
-fn fit_doubts(refined: &Refined) -> Vec<String> {
-    let overlaps = refined.overlaps.iter().filter(|&&overlap| overlap < GOOD_OVERLAP);
+fn fit_doubts(refined: &PoseFit) -> Vec<String> {
+    let overlaps = refined.ious.iter().filter(|&&overlap| overlap < GOOD_OVERLAP);
     let doubts = overlaps.map(|overlap| format!("overlaps a silhouette by {overlap:.2} only"));
     let unsettled = (!refined.converged).then(|| "stopped before it settled".to_owned());
     doubts.chain(unsettled).collect()

@@ -1,6 +1,6 @@
 //! How well each view's border is known, from how the fits of a take leave it.
 
-use phalanx_refine::{BorderNoise, BorderResiduals};
+use phalanx_refine::{BoundaryNoise, BoundaryResiduals};
 use rayon::prelude::*;
 
 use super::frame_fit::{Found, FrameFitter};
@@ -13,26 +13,26 @@ const FRAMES: usize = 24;
 pub(super) fn border_noise(
     fitter: &FrameFitter<'_>,
     found: &[Option<Found>],
-) -> Result<Vec<Option<BorderNoise>>> {
+) -> Result<Vec<Option<BoundaryNoise>>> {
     let found: Vec<&Found> = found.iter().flatten().collect();
     let chosen = super::consensus::evenly(found.len(), FRAMES);
-    let of_view = |view: usize| -> Result<Option<BorderNoise>> {
+    let of_view = |view: usize| -> Result<Option<BoundaryNoise>> {
         let mut residuals = Vec::new();
         for &k in &chosen {
             let Found { rest, refined, crops, left_out, .. } = found[k];
             let Some(crop) = crops[view].as_ref().filter(|_| !left_out[view]) else { continue };
             let frame = found[k].frame(fitter.hand);
             let Some(evidence) = fitter.evidence_of(crop, &frame) else { continue };
-            residuals.push(BorderResiduals::of(fitter.hand, rest, &evidence, &refined.pose)?);
+            residuals.push(BoundaryResiduals::of(fitter.hand, rest, &evidence, &refined.pose)?);
         }
-        Ok(BorderNoise::of(&residuals))
+        Ok(BoundaryNoise::of(&residuals))
     };
     (0..fitter.weights.len()).into_par_iter().map(of_view).collect()
 }
 
 /// How much a place of each view's border counts beside one that is known independently to `noise`, px.
-pub(super) fn weights(borders: &[Option<BorderNoise>], noise: f64) -> Vec<f64> {
-    let weight = |border: &BorderNoise| (noise / border.deviation).powi(2) / border.correlated;
+pub(super) fn weights(borders: &[Option<BoundaryNoise>], noise: f64) -> Vec<f64> {
+    let weight = |border: &BoundaryNoise| (noise / border.deviation).powi(2) / border.correlated;
     borders.iter().map(|border| border.as_ref().map_or(1.0, weight)).collect()
 }
 

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DQuat, DVec3};
 use phalanx_camera::{Camera, Volume};
 use phalanx_hand::{Dof, HandShape};
-use phalanx_refine::Refinement;
+use phalanx_refine::PoseFitSettings;
 use rayon::prelude::*;
 
 use super::frame_fit::{Found, FrameFitter};
@@ -50,13 +50,13 @@ pub fn estimate_volume(
 
 /// How frames are fitted while it is not known which views agree: hand and cameras are taken as they
 /// are, and starts are many.
-pub(super) fn refinement() -> Refinement {
-    Refinement { disagreement: Some(DISAGREEMENT), ..believing() }
+pub(super) fn refinement() -> PoseFitSettings {
+    PoseFitSettings { disagreement: Some(DISAGREEMENT), ..believing() }
 }
 
 /// How frames are fitted when all views that are left agree.
-pub(super) fn believing() -> Refinement {
-    Refinement { retries: 0, ..Refinement::of_noise(NOISE) }
+pub(super) fn believing() -> PoseFitSettings {
+    PoseFitSettings { max_restarts: 0, ..PoseFitSettings::of_noise(NOISE) }
 }
 
 /// A border that is as far from the hand's as this, in pixels of a crop, begins to count less: a quarter

@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 use phalanx_hand::{Dof, HandShape, Pose};
-use phalanx_refine::{Evidence, Level, PosePrior, Refined, Refinement, Screened};
+use phalanx_refine::{Level, PoseFit, PoseFitSettings, PosePrior, Screened, SilhouetteObservation};
 
 use super::consensus::DISAGREEMENT;
 use super::observation::{self, Sight};
@@ -31,7 +31,7 @@ const COARSE: Level = Level { reach: 12.0, every: 4, steps: 4 };
 pub(super) struct FrameFitter<'a> {
     pub(super) hand: &'a HandShape,
     pub(super) prior: &'a PosePrior,
-    pub(super) refinement: &'a Refinement,
+    pub(super) refinement: &'a PoseFitSettings,
     /// How much a place of each view's border counts.
     pub(super) weights: Vec<f64>,
 }
@@ -41,7 +41,7 @@ pub(super) struct FrameFitter<'a> {
 pub(super) struct Found {
     /// The frame of the hand at rest that the pose is in.
     pub(super) rest: DAffine3,
-    pub(super) refined: Refined,
+    pub(super) refined: PoseFit,
     /// What each view sees.
     pub(super) crops: Vec<Option<HandCrop>>,
     /// The views that disagree with the others and are left out.
@@ -73,7 +73,7 @@ struct Screening {
     rest: DAffine3,
     screened: Vec<Screened>,
     crops: Vec<Option<HandCrop>>,
-    evidence: Vec<Evidence>,
+    evidence: Vec<SilhouetteObservation>,
     unexplained: f64,
 }
 
@@ -158,7 +158,7 @@ impl FrameFitter<'_> {
         crops: &[Option<HandCrop>],
         left_out: &[bool],
         frame: &DAffine3,
-    ) -> Vec<Evidence> {
+    ) -> Vec<SilhouetteObservation> {
         let views = crops.iter().zip(left_out).zip(&self.weights);
         let used = views.filter(|((_, left_out), _)| !**left_out);
         used.filter_map(|((crop, _), weight)| {
@@ -168,7 +168,11 @@ impl FrameFitter<'_> {
     }
 
     /// What a crop tells; `None` of one without a border.
-    pub(super) fn evidence_of(&self, crop: &HandCrop, frame: &DAffine3) -> Option<Evidence> {
+    pub(super) fn evidence_of(
+        &self,
+        crop: &HandCrop,
+        frame: &DAffine3,
+    ) -> Option<SilhouetteObservation> {
         let length = observation::length_mm(self.hand);
         let arm = observation::arm_of(frame.translation, frame.matrix3.z_axis, length);
         crop.evidence(&arm).ok()
@@ -205,13 +209,13 @@ impl FrameFitter<'_> {
     fn fit(
         &self,
         rest: &DAffine3,
-        evidence: &[Evidence],
+        evidence: &[SilhouetteObservation],
         starts: &[Pose],
-    ) -> Result<Option<Refined>> {
+    ) -> Result<Option<PoseFit>> {
         let screened = self.screen(rest, evidence, starts)?;
-        let mut best: Option<Refined> = None;
+        let mut best: Option<PoseFit> = None;
         for start in distinct(&screened, KEPT) {
-            let refined = match self.refinement.run(self.hand, rest, evidence, &start, self.prior) {
+            let refined = match self.refinement.fit(self.hand, rest, evidence, &start, self.prior) {
                 Ok(refined) => refined,
                 // One view may leave a pose without a covariance; other poses have one.
                 Err(phalanx_refine::Error::Precision { .. }) => continue,
@@ -228,7 +232,7 @@ impl FrameFitter<'_> {
     fn screen(
         &self,
         rest: &DAffine3,
-        evidence: &[Evidence],
+        evidence: &[SilhouetteObservation],
         starts: &[Pose],
     ) -> Result<Vec<Screened>> {
         let mut screened =

@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 use phalanx_hand::HandShape;
-use phalanx_refine::{Calibration, CalibrationFrame, HandDoubt};
+use phalanx_refine::{BundleAdjustment, BundleFrame, ShapePrior};
 use rayon::prelude::*;
 
 use super::consensus::evenly;
@@ -14,7 +14,7 @@ const LEARNT_FROM: usize = 16;
 
 /// How far hands differ from the mean adult's: the logarithm of the size so that hands of 130 to 215 mm
 /// are within two deviations of their middle, and of every bone and radius by some per cent.
-pub(super) const POPULATION: HandDoubt = HandDoubt { size: 0.126, each: 0.06 };
+pub(super) const POPULATION: ShapePrior = ShapePrior { size: 0.126, each: 0.06 };
 
 /// A hand, and how well each of its proportions is known (standard deviations of logarithms).
 #[derive(Debug, Clone)]
@@ -51,19 +51,19 @@ pub(super) fn learn(
         let frame = found.frame(fitter.hand);
         let evidence = fitter.evidence(&found.crops, &found.left_out, &frame);
         let start = found.pose_in(rest, fitter.hand);
-        CalibrationFrame { evidence, start, prior: fitter.prior.clone() }
+        BundleFrame { observations: evidence, start, prior: fitter.prior.clone() }
     };
     let chosen = evenly(found.len(), 2 * LEARNT_FROM);
     let frames = chosen.iter().map(|&k| frame(found[k]));
-    let frames = frames.filter(|frame| !frame.evidence.is_empty());
+    let frames = frames.filter(|frame| !frame.observations.is_empty());
     let (seen, held) = alternating(frames);
     if held.is_empty() {
         return Ok(None);
     }
     let refinement = fitter.refinement.clone();
     let share = independent.min(1.0).sqrt();
-    let people = HandDoubt { size: share * POPULATION.size, each: share * POPULATION.each };
-    let calibration = Calibration { refinement, hand: people, cameras: None };
+    let people = ShapePrior { size: share * POPULATION.size, each: share * POPULATION.each };
+    let calibration = BundleAdjustment { pose_fit: refinement, hand: people, cameras: None };
     let calibrated = match calibration.run(mean, rest, &seen) {
         Ok(calibrated) => calibrated,
         // What these frames leave open stays as it was.
@@ -71,9 +71,9 @@ pub(super) fn learn(
         Err(error) => return Err(error.into()),
     };
     let energy = |hand: &HandShape| -> Result<f64> {
-        let of_frame = |frame: &CalibrationFrame| -> Result<f64> {
-            let CalibrationFrame { evidence, start, prior } = frame;
-            Ok(fitter.refinement.run(hand, rest, evidence, start, prior)?.energy)
+        let of_frame = |frame: &BundleFrame| -> Result<f64> {
+            let BundleFrame { observations: evidence, start, prior } = frame;
+            Ok(fitter.refinement.fit(hand, rest, evidence, start, prior)?.energy)
         };
         let energies: Vec<f64> = held.par_iter().map(of_frame).collect::<Result<_>>()?;
         Ok(energies.iter().sum())

@@ -110,7 +110,7 @@ impl Reporter<'_> {
                 (_, true) => Some(Missing::Disagrees),
                 _ => None,
             },
-            overlap: agreement.map(|agreement| agreement.overlap),
+            overlap: agreement.map(|agreement| agreement.iou),
         });
         let views: Vec<ViewFit> = views.collect();
         let used = || (0..views.len()).filter(|&view| views[view].missing.is_none());

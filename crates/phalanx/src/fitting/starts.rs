@@ -37,7 +37,8 @@ pub(super) fn pose_prior() -> Result<PosePrior> {
     for dof in [Dof::TX, Dof::TY, Dof::TZ] {
         deviations[dof.index()] = ANYWHERE_MM;
     }
-    Ok(PosePrior::independent(Pose::REST, &deviations)?.and(&PosePrior::of_poses(&postures)?)?)
+    Ok(PosePrior::independent(Pose::REST, &deviations)?
+        .product(&PosePrior::of_poses(&postures)?)?)
 }
 
 /// How a folded finger's four angles are, degrees.

@@ -4,7 +4,7 @@ use glam::DAffine3;
 use image::GrayImage;
 use phalanx_camera::{Camera, Volume};
 use phalanx_hand::HandShape;
-use phalanx_refine::{PosePrior, Refinement};
+use phalanx_refine::{PoseFitSettings, PosePrior};
 use rayon::prelude::*;
 
 use super::borders;
@@ -151,7 +151,7 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
 struct Take<'a> {
     cameras: &'a [Camera],
     prior: &'a PosePrior,
-    refinement: &'a Refinement,
+    refinement: &'a PoseFitSettings,
     mean: HandShape,
     hand: KnownHand,
     weights: Vec<f64>,
@@ -171,7 +171,7 @@ impl<'a> Take<'a> {
         cameras: &'a [Camera],
         hand: &HandShape,
         prior: &'a PosePrior,
-        refinement: &'a Refinement,
+        refinement: &'a PoseFitSettings,
     ) -> Self {
         let mean = fitted_hand(hand);
         let hand = KnownHand::anyone(&mean);

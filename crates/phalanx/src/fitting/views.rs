@@ -88,8 +88,8 @@ const LEAST_OVERLAP: f64 = 0.7;
 impl Usual {
     /// How far a view is from agreeing: up to 1 it does.
     fn contradiction(self, agreement: &Agreement) -> f64 {
-        let Agreement { overlap, unexplained } = agreement;
-        (unexplained / self.most).max((1.0 - overlap) / (1.0 - LEAST_OVERLAP))
+        let Agreement { iou, unexplained } = agreement;
+        (unexplained / self.most).max((1.0 - iou) / (1.0 - LEAST_OVERLAP))
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use image::GrayImage;
 use phalanx_camera::{Camera, Intrinsics, PixelMap};
-use phalanx_refine::Evidence;
+use phalanx_refine::SilhouetteObservation;
 
 use super::arm::Arm;
 use crate::window::resample;
@@ -88,12 +88,12 @@ impl HandCrop {
     ///
     /// # Errors
     /// A mask without a border that is known.
-    pub fn evidence(&self, arm: &Arm) -> Result<Evidence> {
+    pub fn evidence(&self, arm: &Arm) -> Result<SilhouetteObservation> {
         let covered = arm.seen_by(&self.camera);
         let known = |at: DVec2| {
             self.inside.get_pixel(at.x as u32, at.y as u32).0[0] > 127 && !covered.covers(at)
         };
-        let evidence = Evidence::within(&self.camera, &self.mask, known)?;
+        let evidence = SilhouetteObservation::within(&self.camera, &self.mask, known)?;
         Ok(evidence.resampled(1.0 / self.grain))
     }
 }

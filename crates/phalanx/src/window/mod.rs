@@ -9,7 +9,7 @@ pub(crate) mod resample;
 use glam::DVec2;
 use image::GrayImage;
 use phalanx_camera::{Camera, PixelMap};
-use phalanx_refine::Evidence;
+use phalanx_refine::SilhouetteObservation;
 use phalanx_segmentation::{LocatedHand, Silhouette};
 use serde::{Deserialize, Serialize};
 
@@ -87,10 +87,10 @@ impl Window {
     ///
     /// # Errors
     /// A silhouette of another size than the window, or without a border.
-    pub fn evidence(&self, silhouette: &Silhouette) -> Result<Evidence> {
+    pub fn evidence(&self, silhouette: &Silhouette) -> Result<SilhouetteObservation> {
         let inside = resample::inside(&self.to_picture, WORKING_SIZE, self.picture());
         let known = |at: DVec2| inside.get_pixel(at.x as u32, at.y as u32).0[0] > 127;
-        let evidence = Evidence::within(&self.camera, &silhouette.mask, known)?;
+        let evidence = SilhouetteObservation::within(&self.camera, &silhouette.mask, known)?;
         Ok(evidence.resampled(1.0 / resample::pixels_aside(&self.to_picture, WORKING_SIZE)))
     }
 

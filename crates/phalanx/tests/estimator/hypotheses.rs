@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use phalanx::{Error, Estimator, FixedPoses, NoProgress, Picture, Refiner, Workspace};
 use phalanx_hand::{Dof, HandShape, Pose};
-use phalanx_refine::Refinement;
+use phalanx_refine::PoseFitSettings;
 
 use crate::desk::{FROM_TOP, closing, difference_deg, estimate, masks, mean, top, unseen};
 
@@ -48,7 +48,7 @@ fn the_first_is_the_estimate_and_the_nearest_is_nearer() {
 /// order their starts come, and one of them nearer to the truth than the first alone.
 #[test]
 fn refined_poses_stand_for_all_that_came_out() {
-    let refiner = Refiner::for_estimator(&LEARNT, Refinement::default()).unwrap();
+    let refiner = Refiner::for_estimator(&LEARNT, PoseFitSettings::default()).unwrap();
     let (mut first, mut nearest) = (Vec::new(), Vec::new());
     for pose in unseen() {
         let masks = masks(&top(), &pose);

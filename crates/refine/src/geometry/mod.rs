@@ -1,4 +1,4 @@
-//! A posed hand against rays: the solids, what they pass, and what of them is in the same place.
+//! A posed hand against rays: the primitives, what they pass, and what of them is in the same place.
 
 pub(crate) mod correspondence;
 pub(crate) mod self_collision;

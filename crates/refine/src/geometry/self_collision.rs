@@ -12,9 +12,9 @@ const DEVIATION: f64 = 3.0;
 
 /// Two phalanges of different digits that are in the same place.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Touch {
-    /// The two solids, by their numbers.
-    pub(crate) solids: [usize; 2],
+pub(crate) struct Penetration {
+    /// The two primitives, by their numbers.
+    pub(crate) primitives: [usize; 2],
     /// Where on each axis they are deepest in each other, 0 at the first ball and 1 at the second.
     pub(crate) places: [f64; 2],
     /// Unit vector from the second axis to the first, there.
@@ -23,7 +23,7 @@ pub(crate) struct Touch {
     pub(crate) excess: f64,
 }
 
-impl Touch {
+impl Penetration {
     /// What speaks against it.
     pub(crate) fn energy(&self) -> f64 {
         0.5 * Self::WEIGHT * self.excess * self.excess
@@ -35,15 +35,15 @@ impl Touch {
 
 /// What speaks against a posed hand because of its digits being in the same place.
 pub(crate) fn energy(posed: &PosedHand) -> f64 {
-    touches(posed).map(|touch| touch.energy()).sum()
+    penetrations(posed).map(|penetration| penetration.energy()).sum()
 }
 
 /// All phalanges of different digits that are too deep in each other. For this purpose a phalanx is
 /// as thick everywhere as it is on average.
-pub(crate) fn touches(posed: &PosedHand) -> impl Iterator<Item = Touch> + '_ {
-    let solids = posed.primitives.iter().zip(&posed.links).enumerate();
-    let phalanges: Vec<_> = solids
-        .filter_map(|(number, (solid, links))| match (solid, links[0], links[1]) {
+pub(crate) fn penetrations(posed: &PosedHand) -> impl Iterator<Item = Penetration> + '_ {
+    let primitives = posed.primitives.iter().zip(&posed.links).enumerate();
+    let phalanges: Vec<_> = primitives
+        .filter_map(|(number, (primitive, links))| match (primitive, links[0], links[1]) {
             (Primitive::RoundCone(balls), Link::Segment(digit, _), Link::Segment(..)) => {
                 Some((number, digit, *balls))
             }
@@ -53,11 +53,11 @@ pub(crate) fn touches(posed: &PosedHand) -> impl Iterator<Item = Touch> + '_ {
     let pairs = (0..phalanges.len()).flat_map(move |i| (0..i).map(move |j| (i, j)));
     pairs.filter_map(move |(i, j)| {
         let ((a, digit, one), (b, other_digit, other)) = (phalanges[i], phalanges[j]);
-        (digit != other_digit).then(|| touch([a, b], one, other)).flatten()
+        (digit != other_digit).then(|| penetration([a, b], one, other)).flatten()
     })
 }
 
-fn touch(solids: [usize; 2], one: [Ball; 2], other: [Ball; 2]) -> Option<Touch> {
+fn penetration(primitives: [usize; 2], one: [Ball; 2], other: [Ball; 2]) -> Option<Penetration> {
     let thick = |balls: [Ball; 2]| f64::midpoint(balls[0].radius, balls[1].radius);
     let reach = thick(one) + thick(other) - GIVES;
     let long = |balls: [Ball; 2]| balls[0].center.distance(balls[1].center);
@@ -71,7 +71,7 @@ fn touch(solids: [usize; 2], one: [Ball; 2], other: [Ball; 2]) -> Option<Touch> 
     let excess = reach - p.distance(q);
     // Axes that cross have no direction to part in.
     let apart = (p - q).try_normalize()?;
-    (excess > 0.0).then_some(Touch { solids, places, apart, excess })
+    (excess > 0.0).then_some(Penetration { primitives, places, apart, excess })
 }
 
 /// Where two segments are nearest to each other, as shares of their lengths (Ericson 2005, § 5.1.9).

@@ -6,19 +6,19 @@ use phalanx_hand::{HandShape, Pose, PosedHand};
 /// How a hand differs from a given one: the logarithms of a factor for its size and of one for every
 /// bone and radius, in the order of [`HandShape::varied`].
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Proportions {
+pub(crate) struct ShapeParameters {
     pub(crate) logarithms: Vec<f64>,
 }
 
 /// How a ball changes with one of the numbers.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Slope {
+pub(crate) struct SphereSlope {
     pub(crate) number: usize,
     pub(crate) center: DVec3,
     pub(crate) radius: f64,
 }
 
-impl Proportions {
+impl ShapeParameters {
     /// Those of the given hand itself.
     pub(crate) fn of(given: &HandShape) -> Self {
         let mut logarithms = vec![0.0];
@@ -36,26 +36,26 @@ impl Proportions {
         given.varied(|| (size + each.next().copied().unwrap_or(0.0)).exp())
     }
 
-    /// How each ball of each solid of the posed hand changes with the numbers, by differences.
+    /// How each ball of each primitive of the posed hand changes with the numbers, by differences.
     pub(crate) fn slopes(
         &self,
         given: &HandShape,
         pose: &Pose,
         rest: &DAffine3,
         posed: &PosedHand,
-    ) -> Vec<[Vec<Slope>; 3]> {
+    ) -> Vec<[Vec<SphereSlope>; 3]> {
         const STEP: f64 = 1e-4;
-        let mut slopes = vec![<[Vec<Slope>; 3]>::default(); posed.primitives.len()];
+        let mut slopes = vec![<[Vec<SphereSlope>; 3]>::default(); posed.primitives.len()];
         for number in 0..self.logarithms.len() {
             let mut changed = self.clone();
             changed.logarithms[number] += STEP;
             let changed = changed.hand(given).pose(pose, rest);
-            for (solid, slopes) in slopes.iter_mut().enumerate() {
+            for (primitive, slopes) in slopes.iter_mut().enumerate() {
                 let (before, after) =
-                    (posed.primitives[solid].balls(), changed.primitives[solid].balls());
+                    (posed.primitives[primitive].balls(), changed.primitives[primitive].balls());
                 for (k, (a, b)) in before.iter().zip(after).enumerate() {
                     if a != b {
-                        slopes[k].push(Slope {
+                        slopes[k].push(SphereSlope {
                             number,
                             center: (b.center - a.center) / STEP,
                             radius: (b.radius - a.radius) / STEP,

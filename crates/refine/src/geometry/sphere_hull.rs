@@ -1,32 +1,32 @@
 //! How far a camera's ray passes a hull of balls.
 //!
-//! A ray begins at the camera: of a solid that crosses the camera's plane it passes what is in front,
+//! A ray begins at the camera: of a primitive that crosses the camera's plane it passes what is in front,
 //! and what is behind it passes at the camera's centre.
 
 use glam::{DMat3, DVec2, DVec3};
 use phalanx_hand::Primitive;
 
-/// A solid of the hand in a camera's frame, as rays from the camera's centre see it.
+/// A primitive of the hand in a camera's frame, as rays from the camera's centre see it.
 ///
 /// A ray touches the hull of some balls where it touches one of the balls whose centres and radii
 /// are means of theirs, weighted alike: ρ = min over weights of |distance of the ray from the
 /// centre| − radius is 0 on the outline, exactly and in any perspective. Where balls are behind the
 /// camera it is so only for edges, which is enough: nothing is seen there.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Hull {
+pub(crate) struct SphereHull {
     centers: [DVec3; 3],
     radii: [f64; 3],
     balls: usize,
-    /// From where the balls are held to the solid, if it is squashed.
+    /// From where the balls are held to the primitive, if it is squashed.
     squash: Option<DMat3>,
-    /// What undoes the squash of a squashed solid; rays are taken through it before they are
+    /// What undoes the squash of a squashed primitive; rays are taken through it before they are
     /// compared with the balls.
     unsquash: Option<DMat3>,
 }
 
 /// Where a ray passes a hull most closely.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Passing {
+pub(crate) struct ClosestApproach {
     /// ρ, mm: positive outside.
     pub(crate) distance: f64,
     /// Weights of the balls, summing to 1.
@@ -34,7 +34,7 @@ pub(crate) struct Passing {
     /// ∂ρ of a shift of the balls, in the camera's frame; zero where the ray goes through the
     /// middle.
     pub(crate) normal: DVec3,
-    /// For a squashed solid the point of the ray that its rigid motion acts at, in the camera's
+    /// For a squashed primitive the point of the ray that its rigid motion acts at, in the camera's
     /// frame.
     pub(crate) point: Option<DVec3>,
 }
@@ -114,12 +114,13 @@ fn squared_distance(point: DVec2, from: DVec2, to: DVec2) -> f64 {
     offset.distance_squared(line * along)
 }
 
-impl Hull {
-    /// Of a solid in the camera's frame.
-    pub(crate) fn new(solid: &Primitive) -> Self {
-        let balls = solid.balls();
+impl SphereHull {
+    /// Of a primitive in the camera's frame.
+    pub(crate) fn new(primitive: &Primitive) -> Self {
+        let balls = primitive.balls();
         let at = |k: usize| balls[k.min(balls.len() - 1)];
-        let squash = matches!(solid, Primitive::GeneralisedCylinder { .. }).then(|| solid.squash());
+        let squash =
+            matches!(primitive, Primitive::GeneralisedCylinder { .. }).then(|| primitive.squash());
         let unsquash = squash.map(|squash| squash.inverse());
         let shift = unsquash.map_or(DVec3::ZERO, |m| m * at(0).center - at(0).center);
         Self {
@@ -158,21 +159,31 @@ impl Hull {
     }
 
     /// Where the ray of unit direction `ray` from the camera's centre passes.
-    pub(crate) fn pass(&self, ray: DVec3) -> Passing {
-        self.pass_within(f64::INFINITY, ray).expect("any distance is within")
+    pub(crate) fn closest_approach(&self, ray: DVec3) -> ClosestApproach {
+        self.closest_approach_within(f64::INFINITY, ray).expect("any distance is within")
     }
 
     /// The same; nothing where that is no nearer than a distance, mm.
-    pub(crate) fn pass_within(&self, distance: f64, ray: DVec3) -> Option<Passing> {
-        let Some(unsquash) = self.unsquash else { return self.pass_round(distance, ray) };
+    pub(crate) fn closest_approach_within(
+        &self,
+        distance: f64,
+        ray: DVec3,
+    ) -> Option<ClosestApproach> {
+        let Some(unsquash) = self.unsquash else {
+            return self.closest_approach_to_spheres(distance, ray);
+        };
         let stretched = unsquash * ray;
         let length = stretched.length();
-        let passing = self.pass_round(distance, stretched / length)?;
-        let foot = self.center(&passing.weights).dot(stretched).max(0.0) / (length * length);
-        Some(Passing { normal: unsquash * passing.normal, point: Some(ray * foot), ..passing })
+        let approach = self.closest_approach_to_spheres(distance, stretched / length)?;
+        let foot = self.center(&approach.weights).dot(stretched).max(0.0) / (length * length);
+        Some(ClosestApproach {
+            normal: unsquash * approach.normal,
+            point: Some(ray * foot),
+            ..approach
+        })
     }
 
-    fn pass_round(&self, within: f64, ray: DVec3) -> Option<Passing> {
+    fn closest_approach_to_spheres(&self, within: f64, ray: DVec3) -> Option<ClosestApproach> {
         let depths = self.centers.map(|center| center.dot(ray));
         let across = [0, 1, 2].map(|k| self.centers[k] - ray * depths[k]);
         let sight = Sight { ray, centers: &self.centers, depths, across };
@@ -192,7 +203,7 @@ impl Hull {
         let to = sight.to(depth);
         let offset = to[0] * weights[0] + to[1] * weights[1] + to[2] * weights[2];
         let normal = if through { DVec3::ZERO } else { offset.normalize_or_zero() };
-        Some(Passing { distance, weights, normal, point: None })
+        Some(ClosestApproach { distance, weights, normal, point: None })
     }
 
     /// ρ of the hull of two balls and the second one's weight.
@@ -313,8 +324,8 @@ mod tests {
         ) {
             let place = DVec2::from_array(at);
             let ray = place.extend(1.0).normalize();
-            let hull = Hull::new(&Primitive::Wedge(balls));
-            let (fast, slow) = (hull.pass(ray).distance, slow(&balls, ray));
+            let hull = SphereHull::new(&Primitive::Wedge(balls));
+            let (fast, slow) = (hull.closest_approach(ray).distance, slow(&balls, ray));
             // The slow one's balls are a few millimetres apart. Through the middle it is enough to
             // be inside.
             let alike = fast <= slow + 1e-9 && slow - fast < 3.0;
@@ -324,7 +335,7 @@ mod tests {
             }
         }
 
-        /// A solid that crosses the camera's plane.
+        /// A primitive that crosses the camera's plane.
         #[test]
         fn rays_begin_at_the_camera(
             ends in (ball_at(60.0), ball_at(-60.0)),
@@ -332,21 +343,21 @@ mod tests {
         ) {
             let place = DVec2::from_array(at);
             let ray = place.extend(1.0).normalize();
-            let hull = Hull::new(&Primitive::RoundCone(ends.into()));
-            let passing = hull.pass(ray);
+            let hull = SphereHull::new(&Primitive::RoundCone(ends.into()));
+            let approach = hull.closest_approach(ray);
             let slow = slow(&[ends.0, ends.1, ends.1], ray);
-            prop_assert!(passing.distance <= slow + 1e-9, "{passing:?} is not {slow}");
-            prop_assert!(slow - passing.distance < 3.0, "{passing:?} is not {slow}");
+            prop_assert!(approach.distance <= slow + 1e-9, "{approach:?} is not {slow}");
+            prop_assert!(slow - approach.distance < 3.0, "{approach:?} is not {slow}");
             prop_assert!(!hull.bound().is_beyond(place, 1e3));
             // The normal is the distance's slope.
             let moved = |by: DVec3| {
                 let ends = [ends.0, ends.1].map(|ball| Ball::new(ball.center + by, ball.radius));
-                Hull::new(&Primitive::RoundCone(ends)).pass(ray).distance
+                SphereHull::new(&Primitive::RoundCone(ends)).closest_approach(ray).distance
             };
             let slope = |axis: DVec3| (moved(axis * 1e-5) - moved(axis * -1e-5)) / 2e-5;
             let slopes = DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z));
-            prop_assume!(passing.distance > -1.0);
-            prop_assert!(slopes.distance(passing.normal) < 1e-3, "{slopes} is not {passing:?}");
+            prop_assume!(approach.distance > -1.0);
+            prop_assert!(slopes.distance(approach.normal) < 1e-3, "{slopes} is not {approach:?}");
         }
 
         #[test]
@@ -357,11 +368,11 @@ mod tests {
             at in prop::array::uniform2(-0.2..0.2_f64),
         ) {
             let thin_axis = DVec3::from_array(thin).try_normalize().unwrap_or(DVec3::X);
-            let hull = Hull::new(&Primitive::GeneralisedCylinder { ends, thin_axis, flatness });
+            let hull = SphereHull::new(&Primitive::GeneralisedCylinder { ends, thin_axis, flatness });
             let place = DVec2::from_array(at);
-            let passed = hull.pass(place.extend(1.0).normalize()).distance;
+            let approach = hull.closest_approach(place.extend(1.0).normalize()).distance;
             for beyond in [1e-6, 1.0, 10.0] {
-                prop_assert!(!hull.bound().is_beyond(place, passed + beyond));
+                prop_assert!(!hull.bound().is_beyond(place, approach + beyond));
             }
         }
     }

@@ -1,28 +1,28 @@
-//! The border of a silhouette: its *cracks*, the middles of the pixel edges between hand and background.
+//! The boundary of a silhouette: its *edges*, the middles of the pixel edges between hand and background.
 
 use glam::DVec2;
 use image::GrayImage;
 
-/// The pixels on both sides of a crack.
-pub(crate) fn beside(crack: DVec2) -> [[u32; 2]; 2] {
-    [-0.25, 0.25].map(|offset| [(crack.x + offset) as u32, (crack.y + offset) as u32])
+/// The pixels on both sides of an edge.
+pub(crate) fn beside(edge: DVec2) -> [[u32; 2]; 2] {
+    [-0.25, 0.25].map(|offset| [(edge.x + offset) as u32, (edge.y + offset) as u32])
 }
 
-/// Whether the pixels on both sides of a crack are known.
-pub(crate) fn is_known(known: &GrayImage, crack: DVec2) -> bool {
-    beside(crack).iter().all(|&[x, y]| known.get_pixel(x, y).0[0] > 127)
+/// Whether the pixels on both sides of an edge are known.
+pub(crate) fn is_known(known: &GrayImage, edge: DVec2) -> bool {
+    beside(edge).iter().all(|&[x, y]| known.get_pixel(x, y).0[0] > 127)
 }
 
 /// The middles of the pixel edges between hand and background, px, row by row.
-pub(crate) fn find_cracks(mask: &GrayImage, cracks: &mut Vec<DVec2>) {
-    cracks.clear();
+pub(crate) fn boundary_edges(mask: &GrayImage, edges: &mut Vec<DVec2>) {
+    edges.clear();
     let rows: &[u8] = mask.as_raw();
     let mut above: &[u8] = &[];
     for (y, row) in rows.chunks_exact(mask.width() as usize).enumerate() {
         let y = y as f64;
         let (to_the_left, own) = (&row[..row.len() - 1], &row[1..]);
-        changes(to_the_left, own, |x| cracks.push(DVec2::new(x as f64 + 1.0, y + 0.5)));
-        changes(above, row, |x| cracks.push(DVec2::new(x as f64 + 0.5, y)));
+        changes(to_the_left, own, |x| edges.push(DVec2::new(x as f64 + 1.0, y + 0.5)));
+        changes(above, row, |x| edges.push(DVec2::new(x as f64 + 0.5, y)));
         above = row;
     }
 }
@@ -41,19 +41,19 @@ fn changes(one: &[u8], other: &[u8], mut at: impl FnMut(usize)) {
     }
 }
 
-/// Which way the background is from a crack: from the mean of the hand's pixels around it to the
-/// crack.
-pub(crate) fn outwards(mask: &GrayImage, crack: DVec2) -> DVec2 {
+/// Which way the background is from an edge: from the mean of the hand's pixels around it to the
+/// edge.
+pub(crate) fn outwards(mask: &GrayImage, edge: DVec2) -> DVec2 {
     const RADIUS: f64 = 2.5;
     let range = |at: f64, size: u32| {
         let first = (at - RADIUS).max(0.0) as u32;
         first..size.min((at + RADIUS).ceil() as u32)
     };
     let mut sum = DVec2::ZERO;
-    for y in range(crack.y, mask.height()) {
-        for x in range(crack.x, mask.width()) {
+    for y in range(edge.y, mask.height()) {
+        for x in range(edge.x, mask.width()) {
             let sign = if mask.get_pixel(x, y).0[0] > 127 { -1.0 } else { 1.0 };
-            sum += (DVec2::new(f64::from(x), f64::from(y)) + 0.5 - crack) * sign;
+            sum += (DVec2::new(f64::from(x), f64::from(y)) + 0.5 - edge) * sign;
         }
     }
     sum.normalize_or_zero()

@@ -1,21 +1,21 @@
-//! The nearest place of a border to every pixel.
+//! The nearest place of a boundary to every pixel.
 
 use glam::DVec2;
 
 use crate::observation::boundary::beside;
 
-/// The nearest crack of every pixel, by two sweeps that hand on neighbours' (Danielsson 1980): in
+/// The nearest edge of every pixel, by two sweeps that hand on neighbours' (Danielsson 1980): in
 /// rare places the second nearest.
-pub(crate) fn nearest_cracks(cracks: &[DVec2], (width, height): (u32, u32)) -> Vec<u32> {
+pub(crate) fn nearest_edges(edges: &[DVec2], (width, height): (u32, u32)) -> Vec<u32> {
     let (w, h) = (width as usize, height as usize);
     let mut nearest = Nearest {
-        cracks,
+        edges,
         of_pixels: vec![u32::MAX; w * h],
         squared: vec![f64::INFINITY; w * h],
         width: w,
     };
-    for (index, crack) in cracks.iter().enumerate() {
-        for [x, y] in beside(*crack) {
+    for (index, edge) in edges.iter().enumerate() {
+        for [x, y] in beside(*edge) {
             nearest.offer(x as usize, y as usize, index as u32);
         }
     }
@@ -42,9 +42,9 @@ pub(crate) fn nearest_cracks(cracks: &[DVec2], (width, height): (u32, u32)) -> V
     nearest.of_pixels
 }
 
-/// The nearest crack of every pixel so far.
+/// The nearest edge of every pixel so far.
 struct Nearest<'a> {
-    cracks: &'a [DVec2],
+    edges: &'a [DVec2],
     of_pixels: Vec<u32>,
     /// How far it is from the pixel's middle, squared.
     squared: Vec<f64>,
@@ -52,21 +52,21 @@ struct Nearest<'a> {
 }
 
 impl Nearest<'_> {
-    /// A crack that may be nearer to a pixel.
-    fn offer(&mut self, x: usize, y: usize, crack: u32) {
-        let Some(at) = self.cracks.get(crack as usize) else { return };
+    /// An edge that may be nearer to a pixel.
+    fn offer(&mut self, x: usize, y: usize, edge: u32) {
+        let Some(at) = self.edges.get(edge as usize) else { return };
         let pixel = y * self.width + x;
         let squared = at.distance_squared(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         if squared < self.squared[pixel] {
-            (self.of_pixels[pixel], self.squared[pixel]) = (crack, squared);
+            (self.of_pixels[pixel], self.squared[pixel]) = (edge, squared);
         }
     }
 
     /// That of another pixel.
     fn take(&mut self, x: usize, y: usize, from_x: usize, from_y: usize) {
-        let crack = self.of_pixels[from_y * self.width + from_x];
-        if crack != self.of_pixels[y * self.width + x] {
-            self.offer(x, y, crack);
+        let edge = self.of_pixels[from_y * self.width + from_x];
+        if edge != self.of_pixels[y * self.width + x] {
+            self.offer(x, y, edge);
         }
     }
 

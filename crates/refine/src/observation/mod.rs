@@ -1,4 +1,4 @@
-//! What a camera saw: a silhouette, its border, and the nearest place of the border to each pixel.
+//! What a camera saw: a silhouette, its boundary, and the nearest place of the boundary to each pixel.
 
 pub(crate) mod boundary;
 pub(crate) mod distance_transform;

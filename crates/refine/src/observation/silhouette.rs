@@ -5,49 +5,49 @@ use image::{GrayImage, Luma};
 use phalanx_camera::Camera;
 
 use crate::error::{Error, Result};
-use crate::observation::boundary::{self, find_cracks, outwards};
-use crate::observation::distance_transform::nearest_cracks;
+use crate::observation::boundary::{self, boundary_edges, outwards};
+use crate::observation::distance_transform::nearest_edges;
 
 /// One camera and the silhouette that it saw.
 ///
-/// The silhouette's border is held as its *cracks*: the middles of the pixel edges between hand and
-/// background. A crack lies within half a pixel of the true border, on average on it. The image's
-/// own border, where it cuts the forearm, has none.
+/// The silhouette's boundary is held as its *edges*: the middles of the pixel edges between hand and
+/// background. An edge lies within half a pixel of the true boundary, on average on it. The image's
+/// own boundary, where it cuts the forearm, has none.
 #[derive(Debug, Clone)]
-pub struct Evidence {
+pub struct SilhouetteObservation {
     camera: Camera,
     mask: GrayImage,
     /// 255 where it is known whether there is hand, 0 elsewhere.
     known: GrayImage,
-    /// How far off its place the border is, over what it is where pixels were seen at once.
+    /// How far off its place the boundary is, over what it is where pixels were seen at once.
     grain: f64,
-    /// How much a place of the border counts.
+    /// How much a place of the boundary counts.
     weight: f64,
-    /// Unit directions of the cracks in the camera's frame.
+    /// Unit directions of the edges in the camera's frame.
     rays: Vec<DVec3>,
     /// Their places, px.
-    cracks: Vec<DVec2>,
-    /// Which way the background is from each crack: unit vectors of the image.
+    edges: Vec<DVec2>,
+    /// Which way the background is from each edge: unit vectors of the image.
     normals: Vec<DVec2>,
-    /// The nearest crack of every pixel.
+    /// The nearest edge of every pixel.
     nearest: Vec<u32>,
 }
 
-impl Evidence {
+impl SilhouetteObservation {
     /// A mask of the size of the camera's image, in which hand is over 127.
     ///
     /// # Errors
-    /// A mask of another size, or one without a border between hand and background.
+    /// A mask of another size, or one without a boundary between hand and background.
     pub fn new(camera: &Camera, mask: &GrayImage) -> Result<Self> {
         Self::within(camera, mask, |_| true)
     }
 
     /// The same, where it is `known` only of some pixels, by their middles, whether they are hand:
-    /// not where a sleeve covers the arm, or beyond the border of the picture that a window looks
+    /// not where a sleeve covers the arm, or beyond the boundary of the picture that a window looks
     /// into.
     ///
     /// # Errors
-    /// As of [`new`](Self::new); also a mask whose border lies nowhere that is known.
+    /// As of [`new`](Self::new); also a mask whose boundary lies nowhere that is known.
     pub fn within(
         camera: &Camera,
         mask: &GrayImage,
@@ -63,46 +63,46 @@ impl Evidence {
             let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
             Luma([if known(middle) { 255 } else { 0 }])
         });
-        let mut cracks = Vec::new();
-        find_cracks(mask, &mut cracks);
-        cracks.retain(|&crack| boundary::is_known(&known, crack));
-        if cracks.is_empty() {
-            return Err(Error::NoBorder { camera: name() });
+        let mut edges = Vec::new();
+        boundary_edges(mask, &mut edges);
+        edges.retain(|&edge| boundary::is_known(&known, edge));
+        if edges.is_empty() {
+            return Err(Error::NoBoundary { camera: name() });
         }
-        let ray = |&crack: &DVec2| {
-            let direction = camera.intrinsics.to_normalised(crack)?;
+        let ray = |&edge: &DVec2| {
+            let direction = camera.intrinsics.to_normalised(edge)?;
             Some(direction.extend(1.0).normalize())
         };
-        let rays = cracks.iter().map(ray).collect::<Option<_>>();
+        let rays = edges.iter().map(ray).collect::<Option<_>>();
         Ok(Self {
             camera: camera.clone(),
             mask: mask.clone(),
             known,
             grain: 1.0,
             weight: 1.0,
-            rays: rays.ok_or_else(|| Error::NoBorder { camera: name() })?,
-            normals: cracks.iter().map(|&crack| outwards(mask, crack)).collect(),
-            nearest: nearest_cracks(&cracks, expected),
-            cracks,
+            rays: rays.ok_or_else(|| Error::NoBoundary { camera: name() })?,
+            normals: edges.iter().map(|&edge| outwards(mask, edge)).collect(),
+            nearest: nearest_edges(&edges, expected),
+            edges,
         })
     }
 
     /// The same, of a mask that was resampled from another, whose pixels are `pixel` of this mask's
-    /// wide: both put the border off its place, the other's half as far, as it is smoothed.
+    /// wide: both put the boundary off its place, the other's half as far, as it is smoothed.
     #[must_use]
     pub fn resampled(self, pixel: f64) -> Self {
         Self { grain: 1.0_f64.hypot(0.5 * pixel), ..self }
     }
 
-    /// The same, where each place of the border counts `weight` times as much as one that is known to
-    /// [`Refinement::noise`](crate::Refinement::noise) independently of its neighbours: places that
+    /// The same, where each place of the boundary counts `weight` times as much as one that is known to
+    /// [`PoseFitSettings::noise`](crate::PoseFitSettings::noise) independently of its neighbours: places that
     /// err together, or further, count less.
     #[must_use]
     pub fn weighted(self, weight: f64) -> Self {
         Self { weight, ..self }
     }
 
-    /// How much a place of the border counts.
+    /// How much a place of the boundary counts.
     pub(crate) fn weight(&self) -> f64 {
         self.weight
     }
@@ -122,34 +122,34 @@ impl Evidence {
         &self.known
     }
 
-    /// Whether the pixels on both sides of a drawn crack are known.
-    pub(crate) fn is_known(&self, crack: DVec2) -> bool {
-        boundary::is_known(&self.known, crack)
+    /// Whether the pixels on both sides of a drawn edge are known.
+    pub(crate) fn is_known(&self, edge: DVec2) -> bool {
+        boundary::is_known(&self.known, edge)
     }
 
-    /// Unit directions of the cracks, in the camera's frame.
+    /// Unit directions of the edges, in the camera's frame.
     pub(crate) fn rays(&self) -> &[DVec3] {
         &self.rays
     }
 
-    /// The places of the cracks, px.
-    pub(crate) fn cracks(&self) -> &[DVec2] {
-        &self.cracks
+    /// The places of the edges, px.
+    pub(crate) fn edges(&self) -> &[DVec2] {
+        &self.edges
     }
 
-    /// Pixels that a millimetre is wide at a point of the world, over the border's grain.
+    /// Pixels that a millimetre is wide at a point of the world, over the boundary's grain.
     pub(crate) fn pixels_per_mm(&self, at: DVec3) -> f64 {
         let intrinsics = &self.camera.intrinsics;
         let focal = (intrinsics.fx * intrinsics.fy).sqrt();
         focal / self.camera.extrinsics.to_camera(at).length() / self.grain
     }
 
-    /// Which way the background is from each crack.
+    /// Which way the background is from each edge.
     pub(crate) fn normals(&self) -> &[DVec2] {
         &self.normals
     }
 
-    /// The crack that is nearest to a pixel position in the image.
+    /// The edge that is nearest to a pixel position in the image.
     pub(crate) fn nearest(&self, position: DVec2) -> usize {
         let (x, y) = (position.x as usize, position.y as usize);
         let (x, y) =
@@ -158,7 +158,7 @@ impl Evidence {
     }
 
     /// Intersection over union with another mask of this size, of what is known.
-    pub(crate) fn overlap(&self, other: &GrayImage) -> f64 {
+    pub(crate) fn iou(&self, other: &GrayImage) -> f64 {
         let (mut both, mut either) = (0_u32, 0_u32);
         let pixels = self.mask.iter().zip(other.iter()).zip(self.known.iter());
         for ((&a, &b), _) in pixels.filter(|(_, known)| **known > 127) {

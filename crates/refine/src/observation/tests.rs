@@ -1,11 +1,11 @@
-//! Borders found fast against borders found slowly.
+//! Boundaries found fast against boundaries found slowly.
 
 use glam::DVec2;
 use image::GrayImage;
 use proptest::prelude::*;
 
-use crate::observation::boundary::find_cracks;
-use crate::observation::distance_transform::nearest_cracks;
+use crate::observation::boundary::boundary_edges;
+use crate::observation::distance_transform::nearest_edges;
 
 /// Masks of few and of many changes.
 fn masks() -> impl Strategy<Value = GrayImage> {
@@ -17,39 +17,39 @@ fn masks() -> impl Strategy<Value = GrayImage> {
 }
 
 /// By looking at every pair of pixels.
-fn slow_cracks(mask: &GrayImage) -> Vec<DVec2> {
+fn slow_edges(mask: &GrayImage) -> Vec<DVec2> {
     let is_hand = |x: u32, y: u32| mask.get_pixel(x, y).0[0] > 127;
-    let mut cracks = Vec::new();
+    let mut edges = Vec::new();
     for y in 0..mask.height() {
         let across = (1..mask.width()).filter(|&x| is_hand(x - 1, y) != is_hand(x, y));
-        cracks.extend(across.map(|x| DVec2::new(f64::from(x), f64::from(y) + 0.5)));
+        edges.extend(across.map(|x| DVec2::new(f64::from(x), f64::from(y) + 0.5)));
         let down = (0..mask.width()).filter(|&x| y > 0 && is_hand(x, y - 1) != is_hand(x, y));
-        cracks.extend(down.map(|x| DVec2::new(f64::from(x) + 0.5, f64::from(y))));
+        edges.extend(down.map(|x| DVec2::new(f64::from(x) + 0.5, f64::from(y))));
     }
-    cracks
+    edges
 }
 
 proptest! {
     #![proptest_config(crate::property::cases(256))]
 
     #[test]
-    fn cracks_are_where_neighbours_differ(mask in masks()) {
-        let mut cracks = Vec::new();
-        find_cracks(&mask, &mut cracks);
-        prop_assert_eq!(cracks, slow_cracks(&mask));
+    fn edges_are_where_neighbours_differ(mask in masks()) {
+        let mut edges = Vec::new();
+        boundary_edges(&mask, &mut edges);
+        prop_assert_eq!(edges, slow_edges(&mask));
     }
 
     /// The sweeps may miss the nearest by a little.
     #[test]
-    fn the_nearest_crack_is_nearest(mask in masks()) {
-        let mut cracks = Vec::new();
-        find_cracks(&mask, &mut cracks);
-        prop_assume!(!cracks.is_empty());
-        let nearest = nearest_cracks(&cracks, mask.dimensions());
+    fn the_nearest_edge_is_nearest(mask in masks()) {
+        let mut edges = Vec::new();
+        boundary_edges(&mask, &mut edges);
+        prop_assume!(!edges.is_empty());
+        let nearest = nearest_edges(&edges, mask.dimensions());
         for (x, y, _) in mask.enumerate_pixels() {
             let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
-            let found = cracks[nearest[(y * mask.width() + x) as usize] as usize];
-            let least = cracks.iter().map(|crack| crack.distance(middle)).fold(f64::MAX, f64::min);
+            let found = edges[nearest[(y * mask.width() + x) as usize] as usize];
+            let least = edges.iter().map(|edge| edge.distance(middle)).fold(f64::MAX, f64::min);
             prop_assert!(found.distance(middle) <= least + 0.5, "{found} from {middle}");
         }
     }

@@ -1,7 +1,7 @@
 //! One frame: a pose fitted to what cameras saw, and what can be said of a fit.
 
 pub(crate) mod agreement;
-pub(crate) mod border_noise;
+pub(crate) mod boundary_noise;
 pub(crate) mod fit;
 pub(crate) mod posterior;
 pub(crate) mod screening;

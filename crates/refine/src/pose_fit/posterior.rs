@@ -6,14 +6,14 @@ use glam::{DAffine3, DVec3};
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
 
 use crate::error::{Error, Result};
-use crate::geometry::correspondence::View;
-use crate::geometry::shape_parameters::Proportions;
-use crate::observation::silhouette::Evidence;
-use crate::pose_fit::settings::Refinement;
-use crate::priors::nuisance::HandDoubt;
+use crate::geometry::correspondence::ViewMatcher;
+use crate::geometry::shape_parameters::ShapeParameters;
+use crate::observation::silhouette::SilhouetteObservation;
+use crate::pose_fit::settings::PoseFitSettings;
+use crate::priors::nuisance::ShapePrior;
 use crate::priors::pose::PosePrior;
-use crate::solver::loss::Measure;
-use crate::solver::problem::{Frame, Freedom, Problem};
+use crate::solver::loss::RobustLoss;
+use crate::solver::problem::{Frame, FreeParameters, Problem};
 use crate::solver::residuals::linearise;
 
 /// How well a fitted hand is known.
@@ -25,11 +25,11 @@ pub struct Posterior {
     pub joints: [f64; JOINTS],
 }
 
-impl Refinement {
+impl PoseFitSettings {
     /// The deviations of a fitted pose (Laplace's approximation): from the curvature of the energy in
     /// pose and proportions together, where each proportion is known to a standard deviation of its
-    /// logarithm, the size's first ([`Calibrated::hand_std`](crate::Calibrated::hand_std)). They are
-    /// honest where the evidence is [weighted](Evidence::weighted) by how its borders err together.
+    /// logarithm, the size's first ([`BundleResult::hand_std`](crate::BundleResult::hand_std)). They are
+    /// honest where the evidence is [weighted](SilhouetteObservation::weighted) by how its boundaries err together.
     ///
     /// # Errors
     /// No evidence, another number of proportions than the hand has, silhouettes that leave
@@ -38,32 +38,32 @@ impl Refinement {
         &self,
         hand: &HandShape,
         rest: &DAffine3,
-        evidence: &[Evidence],
+        evidence: &[SilhouetteObservation],
         pose: &Pose,
         prior: &PosePrior,
         hand_std: &[f64],
     ) -> Result<Posterior> {
         self.check()?;
         if evidence.is_empty() {
-            return Err(Error::NoEvidence);
+            return Err(Error::NoObservation);
         }
-        let anything = HandDoubt { size: 1.0, each: 1.0 };
+        let anything = ShapePrior { size: 1.0, each: 1.0 };
         let problem = Problem {
             given: hand,
             rest,
             frames: vec![Frame { evidence, prior }],
-            freedom: Freedom { hand: Some(anything), cameras: None },
+            freedom: FreeParameters { hand: Some(anything), cameras: None },
         };
-        let (moment, shared) = (problem.moment(0, pose), problem.shared());
-        let count = shared.proportions.logarithms.len();
+        let (parameters, shared) = (problem.frame_parameters(0, pose), problem.shared());
+        let count = shared.shape.logarithms.len();
         if hand_std.len() != count {
-            let reason = format!("is of {} proportions, the hand has {count}", hand_std.len());
+            let reason = format!("is of {} shape, the hand has {count}", hand_std.len());
             return Err(Error::Precision { reason });
         }
-        let mut views = evidence.iter().map(View::new).collect::<Result<Vec<_>>>()?;
+        let mut views = evidence.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?;
         // Views that were fitted with are believed.
-        let measure = Measure { disagreement: f64::INFINITY, ..self.finest() };
-        let system = linearise(&problem, 0, &moment, &shared, measure, &mut views)?;
+        let loss = RobustLoss { disagreement: f64::INFINITY, ..self.finest() };
+        let system = linearise(&problem, 0, &parameters, &shared, loss, &mut views)?;
         let mut hessian = system.whole_hessian();
         let own = hessian.nrows() - count;
         for (k, std) in hand_std.iter().enumerate() {
@@ -85,7 +85,7 @@ impl Refinement {
         for (k, dof) in dofs.iter().enumerate() {
             std[dof.index()] = covariance[(k, k)].max(0.0).sqrt();
         }
-        let slopes = joint_slopes(hand, rest, pose, dofs, &shared.proportions);
+        let slopes = joint_slopes(hand, rest, pose, dofs, &shared.shape);
         let unknowns: Vec<usize> = (0..dofs.len()).chain(own..own + count).collect();
         Ok(Posterior { std, joints: spreads(&covariance, &unknowns, &slopes) })
     }
@@ -100,7 +100,7 @@ fn joint_slopes(
     rest: &DAffine3,
     pose: &Pose,
     dofs: &[Dof],
-    proportions: &Proportions,
+    shape: &ShapeParameters,
 ) -> Vec<[DVec3; JOINTS]> {
     const STEP: f64 = 1e-5;
     let at = hand.pose(pose, rest).joints;
@@ -110,8 +110,8 @@ fn joint_slopes(
         moved[dof] += STEP;
         slope(hand.pose(&moved, rest).joints)
     });
-    let of_hand = (0..proportions.logarithms.len()).map(|number| {
-        let mut changed = proportions.clone();
+    let of_hand = (0..shape.logarithms.len()).map(|number| {
+        let mut changed = shape.clone();
         changed.logarithms[number] += STEP;
         slope(changed.hand(hand).pose(pose, rest).joints)
     });

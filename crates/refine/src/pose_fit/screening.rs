@@ -4,12 +4,12 @@ use glam::DAffine3;
 use phalanx_hand::{HandShape, Pose};
 
 use crate::error::{Error, Result};
-use crate::geometry::correspondence::View;
-use crate::observation::silhouette::Evidence;
-use crate::pose_fit::settings::{Level, Refinement};
+use crate::geometry::correspondence::ViewMatcher;
+use crate::observation::silhouette::SilhouetteObservation;
+use crate::pose_fit::settings::{Level, PoseFitSettings};
 use crate::priors::pose::PosePrior;
-use crate::solver::levenberg_marquardt::{ANY_ENERGY, State, Stop, descend};
-use crate::solver::problem::{Frame, Freedom, Problem};
+use crate::solver::levenberg_marquardt::{ANY_ENERGY, State, Stop, levenberg_marquardt};
+use crate::solver::problem::{Frame, FreeParameters, Problem};
 
 /// A start after a few coarse steps.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,12 +18,12 @@ pub struct Screened {
     pub pose: Pose,
     /// What speaks against the pose.
     pub energy: f64,
-    /// For each view, how much of its border the pose leaves unexplained: the mean robust squared
+    /// For each view, how much of its boundary the pose leaves unexplained: the mean robust squared
     /// distance over the most that it can be, 0 to 1.
     pub unexplained: Vec<f64>,
 }
 
-impl Refinement {
+impl PoseFitSettings {
     /// Takes a few steps from each start at one level of detail, with hand and cameras as given, and
     /// says how well each then fits. Energies of one call can be compared with each other.
     ///
@@ -33,7 +33,7 @@ impl Refinement {
         &self,
         hand: &HandShape,
         rest: &DAffine3,
-        evidence: &[Evidence],
+        evidence: &[SilhouetteObservation],
         starts: &[Pose],
         prior: &PosePrior,
         level: Level,
@@ -41,25 +41,28 @@ impl Refinement {
         self.check()?;
         hand.validate()?;
         if evidence.is_empty() {
-            return Err(Error::NoEvidence);
+            return Err(Error::NoObservation);
         }
-        let mut views = vec![evidence.iter().map(View::new).collect::<Result<Vec<_>>>()?];
+        let mut views = vec![evidence.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?];
         let problem = Problem {
             given: hand,
             rest,
             frames: vec![Frame { evidence, prior }],
-            freedom: Freedom::default(),
+            freedom: FreeParameters::default(),
         };
-        let measure = self.measure(&level);
-        let stop = Stop { steps: level.steps, gain: COARSE_GAIN, hope: ANY_ENERGY };
+        let loss = self.loss(&level);
+        let stop = Stop { steps: level.steps, gain: COARSE_GAIN, target_energy: ANY_ENERGY };
         let mut screened = Vec::with_capacity(starts.len());
         for start in starts {
-            let state = State { moments: vec![problem.moment(0, start)], shared: problem.shared() };
-            match descend(&problem, state, measure, stop, &mut views) {
+            let state = State {
+                frames: vec![problem.frame_parameters(0, start)],
+                shared: problem.shared(),
+            };
+            match levenberg_marquardt(&problem, state, loss, stop, &mut views) {
                 Ok(outcome) => screened.push(Screened {
-                    pose: outcome.state.moments[0].pose,
+                    pose: outcome.state.frames[0].pose,
                     energy: outcome.energy,
-                    unexplained: outcome.unexplained(measure),
+                    unexplained: outcome.unexplained(loss),
                 }),
                 // A start that a camera cannot draw leads nowhere.
                 Err(Error::Render { .. }) => {}

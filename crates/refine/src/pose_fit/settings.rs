@@ -1,38 +1,38 @@
 //! How poses are refined.
 
 use crate::error::{Error, Result};
-use crate::priors::nuisance::Doubt;
+use crate::priors::nuisance::NuisanceParameters;
 use crate::solver::levenberg_marquardt::{ANY_ENERGY, Stop};
-use crate::solver::loss::Measure;
+use crate::solver::loss::RobustLoss;
 
 /// How poses are refined.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Refinement {
-    /// From coarse to fine; at the last every place along the border is looked at.
+pub struct PoseFitSettings {
+    /// From coarse to fine; at the last every place along the boundary is looked at.
     pub levels: Vec<Level>,
-    /// Standard deviation of a border's place, px; the levels' reach goes with it
+    /// Standard deviation of a boundary's place, px; the levels' reach goes with it
     /// ([`of_noise`](Self::of_noise)).
     pub noise: f64,
-    /// Standard deviation of what segmentation adds to or takes from a whole border, px.
+    /// Standard deviation of what segmentation adds to or takes from a whole boundary, px.
     pub margin: f64,
-    /// How often digits are tried in other postures again where borders stay further apart than
-    /// `content`.
-    pub retries: usize,
-    /// Root of the mean (robust) squared distance of the borders that needs no second try, px.
-    pub content: f64,
-    /// The share of its border from which on a view that a pose leaves unexplained counts less, so that one
+    /// How often digits are tried in other postures again where boundaries stay further apart than
+    /// `restart_threshold`.
+    pub max_restarts: usize,
+    /// Root of the mean (robust) squared distance of the boundaries that needs no second try, px.
+    pub restart_threshold: f64,
+    /// The share of its boundary from which on a view that a pose leaves unexplained counts less, so that one
     /// that shows something else cannot drag the pose along; `None` where all views are believed.
     pub disagreement: Option<f64>,
     /// What may be otherwise than given; `None` where hand and cameras are certain.
-    pub doubt: Option<Doubt>,
+    pub nuisance: Option<NuisanceParameters>,
 }
 
 /// A level of detail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Level {
-    /// How far borders may be apart and still count, px.
+    /// How far boundaries may be apart and still count, px.
     pub reach: f64,
-    /// Of so many places along the border one is looked at.
+    /// Of so many places along the boundary one is looked at.
     pub every: usize,
     /// Steps at most.
     pub steps: usize,
@@ -43,35 +43,35 @@ const GAIN: f64 = 1e-3;
 
 impl Level {
     pub(crate) fn stop(&self) -> Stop {
-        Stop { steps: self.steps, gain: GAIN, hope: ANY_ENERGY }
+        Stop { steps: self.steps, gain: GAIN, target_energy: ANY_ENERGY }
     }
 }
 
-impl Default for Refinement {
+impl Default for PoseFitSettings {
     fn default() -> Self {
         let level = |reach, every, steps| Level { reach, every, steps };
         Self {
             levels: vec![level(12.0, 4, 6), level(3.0, 2, 6), level(1.0, 1, 6)],
             noise: 0.5,
             margin: 1.0,
-            retries: 1,
-            content: 0.29,
+            max_restarts: 1,
+            restart_threshold: 0.29,
             disagreement: None,
-            doubt: None,
+            nuisance: None,
         }
     }
 }
 
-impl Refinement {
-    /// The default where borders are known to a standard deviation of `noise` px: as much further apart
-    /// they still count, but nowhere further than the coarsest level lets them. Borders that no longer
+impl PoseFitSettings {
+    /// The default where boundaries are known to a standard deviation of `noise` px: as much further apart
+    /// they still count, but nowhere further than the coarsest level lets them. Boundaries that no longer
     /// count within what they are known to let a digit stretch out beyond a silhouette at no cost.
     ///
     /// ```
-    /// use phalanx_refine::Refinement;
+    /// use phalanx_refine::PoseFitSettings;
     ///
-    /// assert_eq!(Refinement::of_noise(0.5), Refinement::default());
-    /// let levels = Refinement::of_noise(2.0).levels;
+    /// assert_eq!(PoseFitSettings::of_noise(0.5), PoseFitSettings::default());
+    /// let levels = PoseFitSettings::of_noise(2.0).levels;
     /// let reaches: Vec<f64> = levels.iter().map(|level| level.reach).collect();
     /// assert_eq!(reaches, [12.0, 12.0, 4.0]);
     /// ```
@@ -85,12 +85,12 @@ impl Refinement {
     }
 
     /// The measure of the last level.
-    pub(crate) fn finest(&self) -> Measure {
-        self.measure(self.levels.last().expect("checked"))
+    pub(crate) fn finest(&self) -> RobustLoss {
+        self.loss(self.levels.last().expect("checked"))
     }
 
-    pub(crate) fn measure(&self, level: &Level) -> Measure {
-        Measure {
+    pub(crate) fn loss(&self, level: &Level) -> RobustLoss {
+        RobustLoss {
             reach: level.reach,
             noise: self.noise,
             margin: self.margin,

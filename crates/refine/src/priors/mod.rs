@@ -1,4 +1,4 @@
-//! What is known before looking at borders: of the pose, of the hand and of the cameras.
+//! What is known before looking at boundaries: of the pose, of the hand and of the cameras.
 
 pub(crate) mod gaussian;
 pub(crate) mod nuisance;

@@ -5,7 +5,7 @@ use phalanx_camera::{Camera, Extrinsics};
 
 /// How uncertain a hand's proportions are: standard deviations of logarithms.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HandDoubt {
+pub struct ShapePrior {
     /// Of the hand's size.
     pub size: f64,
     /// Of every bone and radius.
@@ -14,47 +14,47 @@ pub struct HandDoubt {
 
 /// How uncertain it is where each camera stands, about and along each axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CameraDoubt {
+pub struct ExtrinsicsPrior {
     /// Standard deviation of its turn about the middle of the volume, radians.
     pub turn: f64,
     /// Standard deviation of its shift, mm.
     pub shift: f64,
     /// Whether it stands elsewhere in every frame.
-    pub moves: Moves,
+    pub motion: CameraMotion,
 }
 
 /// When cameras move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Moves {
+pub enum CameraMotion {
     /// They stand where they stand, if elsewhere than their calibration says.
-    Never,
+    Static,
     /// From frame to frame.
-    EveryFrame,
+    PerFrame,
 }
 
 /// When a hand and cameras are not believed to be as given, and how far off they may be.
 ///
-/// Where the pose alone explains a border no better than to `beyond`, the proportions of the hand
+/// Where the pose alone explains a boundary no better than to `above_rms_px`, the proportions of the hand
 /// and the places of the cameras are fitted with it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Doubt {
-    /// Root of the mean (robust) squared distance of the borders, px.
-    pub beyond: f64,
+pub struct NuisanceParameters {
+    /// Root of the mean (robust) squared distance of the boundaries, px.
+    pub above_rms_px: f64,
     /// The hand.
-    pub hand: Option<HandDoubt>,
+    pub hand: Option<ShapePrior>,
     /// The cameras.
-    pub cameras: Option<CameraDoubt>,
+    pub cameras: Option<ExtrinsicsPrior>,
 }
 
-impl Default for Doubt {
+impl Default for NuisanceParameters {
     /// People's hands differ from the mean hand by some per cent, careful calibrations from the
     /// truth by a degree or two.
     fn default() -> Self {
         let turn = 1.2_f64.to_radians();
         Self {
-            beyond: 0.38,
-            hand: Some(HandDoubt { size: 0.02, each: 0.06 }),
-            cameras: Some(CameraDoubt { turn, shift: 0.5, moves: Moves::EveryFrame }),
+            above_rms_px: 0.38,
+            hand: Some(ShapePrior { size: 0.02, each: 0.06 }),
+            cameras: Some(ExtrinsicsPrior { turn, shift: 0.5, motion: CameraMotion::PerFrame }),
         }
     }
 }
@@ -62,14 +62,14 @@ impl Default for Doubt {
 /// A camera that stands elsewhere sees what it would see, where it should stand, of a hand that is
 /// moved the other way: this is how the hand seems moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Correction {
+pub(crate) struct ExtrinsicsCorrection {
     /// Scaled axis, radians.
     pub(crate) turn: DVec3,
     /// mm.
     pub(crate) shift: DVec3,
 }
 
-impl Correction {
+impl ExtrinsicsCorrection {
     pub(crate) const NONE: Self = Self { turn: DVec3::ZERO, shift: DVec3::ZERO };
     pub(crate) const NUMBERS: usize = 6;
 

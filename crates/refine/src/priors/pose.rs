@@ -1,4 +1,4 @@
-//! What is known of a pose before looking at borders.
+//! What is known of a pose before looking at boundaries.
 
 use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, Side};
@@ -76,7 +76,7 @@ impl PosePrior {
         let varies = |dof: &Dof| poses.iter().any(|pose| pose[*dof] != poses[0][*dof]);
         let dofs: Vec<Dof> = Dof::ALL.into_iter().filter(varies).collect();
         if poses.is_empty() {
-            return Err(Error::NoEvidence);
+            return Err(Error::NoObservation);
         }
         let mut covariance = Vec::with_capacity(dofs.len() * dofs.len());
         for &a in &dofs {
@@ -94,7 +94,7 @@ impl PosePrior {
     ///
     /// # Errors
     /// Deviations so far apart that the product has no covariance to working precision.
-    pub fn and(&self, other: &Self) -> Result<Self> {
+    pub fn product(&self, other: &Self) -> Result<Self> {
         let count = self.dofs.len();
         let mut precision = Mat::<f64>::zeros(count, count);
         let mut pull = Mat::<f64>::zeros(count, 1);
@@ -157,7 +157,7 @@ impl PosePrior {
     ///
     /// # Errors
     /// A pose that is not finite.
-    pub fn about(&self, mean: Pose) -> Result<Self> {
+    pub fn recentered(&self, mean: Pose) -> Result<Self> {
         Self { mean, ..self.clone() }.checked()
     }
 

@@ -5,11 +5,11 @@ use std::borrow::Cow;
 use glam::{DAffine3, DMat3, DVec3};
 use phalanx_hand::{Dof, Link, Motions, PosedHand, Primitive};
 
-use crate::geometry::correspondence::Match;
-use crate::geometry::self_collision::Touch;
-use crate::geometry::shape_parameters::Slope;
-use crate::observation::silhouette::Evidence;
-use crate::priors::nuisance::Correction;
+use crate::geometry::correspondence::Correspondence;
+use crate::geometry::self_collision::Penetration;
+use crate::geometry::shape_parameters::SphereSlope;
+use crate::observation::silhouette::SilhouetteObservation;
+use crate::priors::nuisance::ExtrinsicsCorrection;
 use crate::solver::normal_equations::Row;
 
 /// A contact between a ray and a posed hand, in the world.
@@ -17,7 +17,7 @@ pub(crate) struct Contact<'a> {
     links: &'a [Link; 3],
     /// The balls' weights in the place that the ray passes.
     weights: [f64; 3],
-    /// What moves there, with weights: the balls' centres, or one point of a squashed solid.
+    /// What moves there, with weights: the balls' centres, or one point of a squashed primitive.
     points: [(f64, DVec3); 3],
     /// ∂residual of a shift, px/mm.
     normal: DVec3,
@@ -25,12 +25,12 @@ pub(crate) struct Contact<'a> {
 
 /// Where a camera stands.
 pub(crate) struct Place<'a> {
-    evidence: &'a Evidence,
+    evidence: &'a SilhouetteObservation,
     /// The motion that its correction gives the hand.
     motion: Option<DAffine3>,
     /// What the motion turns about.
     pivot: DVec3,
-    /// Pixels that a millimetre is wide there, over the border's grain.
+    /// Pixels that a millimetre is wide there, over the boundary's grain.
     pub(crate) scale: f64,
     /// From the camera's directions to the world's, as they are before the motion.
     back: DMat3,
@@ -38,8 +38,8 @@ pub(crate) struct Place<'a> {
 
 impl<'a> Place<'a> {
     pub(crate) fn new(
-        evidence: &'a Evidence,
-        correction: Option<&Correction>,
+        evidence: &'a SilhouetteObservation,
+        correction: Option<&ExtrinsicsCorrection>,
         pivot: DVec3,
     ) -> Self {
         let camera = evidence.camera();
@@ -54,31 +54,31 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// The solids as they seem to stand.
-    pub(crate) fn seen<'s>(&self, solids: &'s [Primitive]) -> Cow<'s, [Primitive]> {
+    /// The primitives as they seem to stand.
+    pub(crate) fn seen<'s>(&self, primitives: &'s [Primitive]) -> Cow<'s, [Primitive]> {
         match self.motion {
-            Some(motion) => solids.iter().map(|solid| solid.moved(&motion)).collect(),
-            None => Cow::Borrowed(solids),
+            Some(motion) => primitives.iter().map(|primitive| primitive.moved(&motion)).collect(),
+            None => Cow::Borrowed(primitives),
         }
     }
 
-    pub(crate) fn contact<'p>(&self, found: &Match, posed: &'p PosedHand) -> Contact<'p> {
-        let passing = &found.passing;
-        let balls = posed.primitives[found.solid].balls();
-        let points = match passing.point {
+    pub(crate) fn contact<'p>(&self, found: &Correspondence, posed: &'p PosedHand) -> Contact<'p> {
+        let approach = &found.approach;
+        let balls = posed.primitives[found.primitive].balls();
+        let points = match approach.point {
             Some(point) => {
                 let world = self.evidence.camera().extrinsics.to_world(point);
                 let motion = self.motion.unwrap_or(DAffine3::IDENTITY);
                 let nothing = (0.0, DVec3::ZERO);
                 [(1.0, motion.inverse().transform_point3(world)), nothing, nothing]
             }
-            None => [0, 1, 2].map(|k| (passing.weights[k], balls[k.min(balls.len() - 1)].center)),
+            None => [0, 1, 2].map(|k| (approach.weights[k], balls[k.min(balls.len() - 1)].center)),
         };
         Contact {
-            links: &posed.links[found.solid],
-            weights: passing.weights,
+            links: &posed.links[found.primitive],
+            weights: approach.weights,
             points,
-            normal: self.back * passing.normal * self.scale,
+            normal: self.back * approach.normal * self.scale,
         }
     }
 
@@ -93,7 +93,7 @@ impl<'a> Place<'a> {
         let arm = motion.transform_point3(middle) - self.pivot;
         let normal = motion.transform_vector3(contact.normal);
         let slopes = [arm.cross(normal).to_array(), normal.to_array()];
-        (0..Correction::NUMBERS).map(move |k| (first + k, slopes[k / 3][k % 3]))
+        (0..ExtrinsicsCorrection::NUMBERS).map(move |k| (first + k, slopes[k / 3][k % 3]))
     }
 }
 
@@ -149,37 +149,39 @@ impl Rows {
     }
 
     /// The slopes of how deep two digits are in each other.
-    pub(crate) fn of_touch(
+    pub(crate) fn of_penetration(
         &mut self,
-        touch: &Touch,
+        penetration: &Penetration,
         posed: &PosedHand,
         motions: &Motions,
-        slopes: Option<&[[Vec<Slope>; 3]]>,
+        slopes: Option<&[[Vec<SphereSlope>; 3]]>,
     ) {
         self.clear();
-        for ((&solid, &place), away) in touch.solids.iter().zip(&touch.places).zip([-1.0, 1.0]) {
-            let centers = [0, 1].map(|k| posed.primitives[solid].balls()[k].center);
+        for ((&primitive, &place), away) in
+            penetration.primitives.iter().zip(&penetration.places).zip([-1.0, 1.0])
+        {
+            let centers = [0, 1].map(|k| posed.primitives[primitive].balls()[k].center);
             let weights = [1.0 - place, place, 0.0];
             let contact = Contact {
-                links: &posed.links[solid],
+                links: &posed.links[primitive],
                 weights,
                 points: [(1.0 - place, centers[0]), (place, centers[1]), (0.0, DVec3::ZERO)],
-                normal: touch.apart * away,
+                normal: penetration.apart * away,
             };
             self.of_pose(&contact, motions);
             if let Some(slopes) = slopes {
-                self.of_proportions(&contact, &slopes[solid], 0.0);
+                self.of_shape(&contact, &slopes[primitive], 0.0);
                 // It is as thick as on average.
                 let thick = Contact { weights: [0.5, 0.5, 0.0], normal: DVec3::ZERO, ..contact };
-                self.of_proportions(&thick, &slopes[solid], -1.0);
+                self.of_shape(&thick, &slopes[primitive], -1.0);
             }
         }
     }
 
-    pub(crate) fn of_proportions(
+    pub(crate) fn of_shape(
         &mut self,
         contact: &Contact<'_>,
-        slopes: &[Vec<Slope>; 3],
+        slopes: &[Vec<SphereSlope>; 3],
         scale: f64,
     ) {
         for (weight, slopes) in contact.weights.iter().zip(slopes) {

@@ -1,30 +1,30 @@
-//! The robust loss of residuals, and the offset of a whole border that it is least at.
+//! The robust loss of residuals, and the offset of a whole boundary that it is least at.
 
-use crate::priors::gaussian::Known;
+use crate::priors::gaussian::GaussianPenalty;
 
 /// The robust measure of residuals (Geman and McClure 1987).
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Measure {
+pub(crate) struct RobustLoss {
     /// Residuals well beyond this, px, do not count.
     pub(crate) reach: f64,
-    /// Standard deviation of a border's place, px.
+    /// Standard deviation of a boundary's place, px.
     pub(crate) noise: f64,
-    /// Standard deviation of what segmentation adds to or takes from a whole border, px.
+    /// Standard deviation of what segmentation adds to or takes from a whole boundary, px.
     pub(crate) margin: f64,
-    /// Of so many cracks one is looked at.
+    /// Of so many edges one is looked at.
     pub(crate) every: usize,
-    /// The share of its border from which on a view that is left unexplained counts less; infinite
+    /// The share of its boundary from which on a view that is left unexplained counts less; infinite
     /// where all views are believed.
     pub(crate) disagreement: f64,
 }
 
-impl Measure {
+impl RobustLoss {
     pub(crate) fn energy(&self, residual: f64) -> f64 {
         let (s, r) = (self.reach * self.reach, residual * residual);
         0.5 * s * r / (s + r) * self.every as f64 / (self.noise * self.noise)
     }
 
-    /// The share of a border that is unexplained, 0 to 1.
+    /// The share of a boundary that is unexplained, 0 to 1.
     pub(crate) fn unexplained(&self, energy: f64, count: usize) -> f64 {
         energy / (count.max(1) as f64 * self.most())
     }
@@ -52,7 +52,7 @@ impl Measure {
         w * w * self.every as f64 / (self.noise * self.noise)
     }
 
-    /// How far a view's border lies outside the hand's, px: what segmentation adds all around or
+    /// How far a view's boundary lies outside the hand's, px: what segmentation adds all around or
     /// takes away. It is where the energy of a view's distances has a minimum, looked for from
     /// nothing, so that a pose has one energy, whatever was tried before it.
     pub(crate) fn margin(&self, distances: &[f64]) -> f64 {
@@ -77,7 +77,7 @@ impl Measure {
     /// The first and the second derivative of the energy of a view's distances by its margin.
     fn margin_slope(&self, margin: f64, distances: &[f64]) -> (f64, f64) {
         let s = self.reach * self.reach;
-        let known = Known::new(margin, self.margin);
+        let known = GaussianPenalty::new(margin, self.margin);
         let (mut slope, mut curvature) = (known.gradient, known.hessian);
         for distance in distances {
             let residual = distance - margin;
@@ -95,15 +95,20 @@ mod tests {
 
     #[test]
     fn a_margin_is_where_the_energy_is_least() {
-        let measure =
-            Measure { reach: 1.0, noise: 0.5, margin: 1.0, every: 1, disagreement: f64::INFINITY };
-        assert_eq!(measure.margin(&[]), 0.0);
-        assert_eq!(measure.margin(&[0.0; 9]), 0.0);
+        let loss = RobustLoss {
+            reach: 1.0,
+            noise: 0.5,
+            margin: 1.0,
+            every: 1,
+            disagreement: f64::INFINITY,
+        };
+        assert_eq!(loss.margin(&[]), 0.0);
+        assert_eq!(loss.margin(&[0.0; 9]), 0.0);
         for (offset, noise) in [(0.3, 0.4), (-0.8, 0.1), (6.0, 0.3), (-20.0, 3.0)] {
             let noise = |k: u32| noise * (f64::from(k) * 2.4).sin();
             let distances: Vec<f64> = (0..300).map(|k| offset + noise(k)).collect();
-            let margin = measure.margin(&distances);
-            let (slope, curvature) = measure.margin_slope(margin, &distances);
+            let margin = loss.margin(&distances);
+            let (slope, curvature) = loss.margin_slope(margin, &distances);
             assert!(slope.abs() < 1e-3 && curvature > 0.0, "{offset}: {margin}, {slope}");
         }
     }

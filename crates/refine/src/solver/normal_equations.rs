@@ -4,7 +4,7 @@ use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, MatRef, Side};
 use phalanx_hand::Pose;
 
-use crate::priors::gaussian::Known;
+use crate::priors::gaussian::GaussianPenalty;
 use crate::priors::pose::PosePrior;
 
 /// A sparse row of the Jacobian: which unknown, and the slope.
@@ -13,13 +13,13 @@ pub(crate) type Row = Vec<(usize, f64)>;
 /// The normal equations of one frame: Hessians column after column, lower triangles of the square
 /// ones.
 #[derive(Debug, Clone)]
-pub(crate) struct FrameSystem {
+pub(crate) struct NormalEquations {
     own: usize,
     shared: usize,
     /// The frame's share of the energy.
     pub(crate) energy: f64,
-    /// That of each view's border.
-    pub(crate) borders: Vec<Border>,
+    /// That of each view's boundary.
+    pub(crate) boundaries: Vec<BoundaryEnergy>,
     own_hessian: Vec<f64>,
     /// `own` × `shared`.
     mixed_hessian: Vec<f64>,
@@ -28,9 +28,9 @@ pub(crate) struct FrameSystem {
     shared_gradient: Vec<f64>,
 }
 
-/// What the residuals of one view's border add up to.
+/// What the residuals of one view's boundary add up to.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Border {
+pub(crate) struct BoundaryEnergy {
     /// Half the robust squared distances over the noise, each place counting once.
     pub(crate) energy: f64,
     pub(crate) count: usize,
@@ -38,14 +38,14 @@ pub(crate) struct Border {
     pub(crate) weights: [f64; 2],
 }
 
-impl FrameSystem {
+impl NormalEquations {
     /// Of so many unknowns of the frame and shared ones.
     pub(crate) fn new(own: usize, shared: usize) -> Self {
         Self {
             own,
             shared,
             energy: 0.0,
-            borders: Vec::new(),
+            boundaries: Vec::new(),
             own_hessian: vec![0.0; own * own],
             mixed_hessian: vec![0.0; own * shared],
             shared_hessian: vec![0.0; shared * shared],
@@ -83,7 +83,7 @@ impl FrameSystem {
     }
 
     /// Adds what is known of the frame's unknowns from `first` on.
-    pub(crate) fn add_known(&mut self, first: usize, known: &[Known]) {
+    pub(crate) fn add_penalties(&mut self, first: usize, known: &[GaussianPenalty]) {
         for (k, known) in (first..).zip(known) {
             self.energy += known.energy;
             self.own_gradient[k] += known.gradient;
@@ -91,8 +91,8 @@ impl FrameSystem {
         }
     }
 
-    /// Adds a residual of the last view's border. Both rows are in ascending order.
-    pub(crate) fn add_border(
+    /// Adds a residual of the last view's boundary. Both rows are in ascending order.
+    pub(crate) fn add_boundary_residual(
         &mut self,
         residual: f64,
         energy: f64,
@@ -100,16 +100,16 @@ impl FrameSystem {
         own: &Row,
         shared: &Row,
     ) {
-        let border = self.borders.last_mut().expect("a view's border was begun");
-        border.energy += energy;
-        border.count += 1;
-        let [of_energy, of_slope] = border.weights;
+        let boundary = self.boundaries.last_mut().expect("a view's boundary was begun");
+        boundary.energy += energy;
+        boundary.count += 1;
+        let [of_energy, of_slope] = boundary.weights;
         self.add(residual, of_energy * energy, of_slope * weight, own, shared);
     }
 
-    /// Begins the border of the next view.
-    pub(crate) fn begin_border(&mut self, weights: [f64; 2]) {
-        self.borders.push(Border { weights, ..Border::default() });
+    /// Begins the boundary of the next view.
+    pub(crate) fn begin_boundary(&mut self, weights: [f64; 2]) {
+        self.boundaries.push(BoundaryEnergy { weights, ..BoundaryEnergy::default() });
     }
 
     /// Adds any residual. Both rows are in ascending order.
@@ -151,7 +151,7 @@ pub(crate) struct Step {
     pub(crate) own: Vec<Vec<f64>>,
     pub(crate) shared: Vec<f64>,
     /// How much energy it would win if slopes stayed as they are.
-    pub(crate) promise: f64,
+    pub(crate) predicted_decrease: f64,
 }
 
 /// The damped step −(H + damping · diag H)⁻¹ g of all frames, each frame's pose being eliminated in
@@ -159,7 +159,11 @@ pub(crate) struct Step {
 /// numbers.
 ///
 /// `None` where the Hessian is not positive definite to working precision.
-pub(crate) fn solve(frames: &[FrameSystem], shared_prior: &[Known], damping: f64) -> Option<Step> {
+pub(crate) fn solve(
+    frames: &[NormalEquations],
+    shared_prior: &[GaussianPenalty],
+    damping: f64,
+) -> Option<Step> {
     let shared = shared_prior.len();
     let mut reduced = Mat::<f64>::zeros(shared, shared);
     let mut slope = Mat::<f64>::zeros(shared, 1);
@@ -201,8 +205,8 @@ pub(crate) fn solve(frames: &[FrameSystem], shared_prior: &[Known], damping: f64
         .zip(&own)
         .map(|(frame, own)| dot(&frame.own_gradient, own) + dot(&frame.shared_gradient, &shared));
     let of_prior = shared_prior.iter().zip(&shared).map(|(known, step)| known.gradient * step);
-    let promise = -0.5 * (of_frames.sum::<f64>() + of_prior.sum::<f64>());
-    Some(Step { own, shared, promise })
+    let predicted_decrease = -0.5 * (of_frames.sum::<f64>() + of_prior.sum::<f64>());
+    Some(Step { own, shared, predicted_decrease })
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -211,8 +215,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// The covariance of what all frames share, their own unknowns being fitted with it.
 pub(crate) fn shared_covariance(
-    frames: &[FrameSystem],
-    shared_prior: &[Known],
+    frames: &[NormalEquations],
+    shared_prior: &[GaussianPenalty],
 ) -> Option<Mat<f64>> {
     let shared = shared_prior.len();
     let mut reduced = Mat::<f64>::zeros(shared, shared);
@@ -232,7 +236,7 @@ pub(crate) fn shared_covariance(
 
 /// The covariance of the first `numbers` unknowns of a frame, with everything shared being known,
 /// column after column: of the inverse of its Hessian.
-pub(crate) fn covariance(frame: &FrameSystem, numbers: usize) -> Option<Vec<f64>> {
+pub(crate) fn covariance(frame: &NormalEquations, numbers: usize) -> Option<Vec<f64>> {
     let n = frame.own;
     let own = Mat::from_fn(n, n, |i, j| frame.own_hessian[i.min(j) * n + i.max(j)]);
     let factor = own.llt(Side::Lower).ok()?;

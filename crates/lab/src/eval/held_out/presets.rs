@@ -8,7 +8,7 @@ use phalanx::{
     Workspace, targets,
 };
 use phalanx_hand::{Dof, Pose};
-use phalanx_refine::{Doubt, Refinement};
+use phalanx_refine::{NuisanceParameters, PoseFitSettings};
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
@@ -120,7 +120,10 @@ impl Learnt {
         let mean = Dof::ALL.map(|dof| {
             set.poses.iter().map(|pose| pose[dof]).sum::<f64>() / set.poses.len() as f64
         });
-        let refinement = Refinement { doubt: Some(Doubt::default()), ..Refinement::default() };
+        let refinement = PoseFitSettings {
+            nuisance: Some(NuisanceParameters::default()),
+            ..PoseFitSettings::default()
+        };
         let refiner = refined::refiner(&estimator, ground, refinement)?;
         let mean = Pose(mean);
         Ok(Self { answers, refiner, preset, train: set.name, samples, views, estimator, mean })

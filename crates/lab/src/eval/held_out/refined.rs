@@ -4,7 +4,8 @@ use anyhow::Result;
 use phalanx::{Estimate, Estimator, Progress, Refiner, SceneDescriber, SceneSource, Workspace};
 use phalanx_hand::Pose;
 use phalanx_refine::{
-    Calibration, CalibrationFrame, CameraDoubt, Doubt, HandDoubt, Moves, Refinement,
+    BundleAdjustment, BundleFrame, CameraMotion, ExtrinsicsPrior, NuisanceParameters,
+    PoseFitSettings, ShapePrior,
 };
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
@@ -18,7 +19,7 @@ const POSTURES: usize = 2000;
 const CALIBRATION_FRAMES: usize = 20;
 
 /// How far a calibrated hand may still be from the true one.
-const CALIBRATED: HandDoubt = HandDoubt { size: 0.005, each: 0.02 };
+const CALIBRATED: ShapePrior = ShapePrior { size: 0.005, each: 0.02 };
 
 /// Where refinement starts.
 #[derive(Clone, Copy, PartialEq)]
@@ -32,7 +33,7 @@ pub(crate) enum Starts {
 pub(crate) fn refiner(
     estimator: &Estimator,
     ground: &Ground,
-    refinement: Refinement,
+    refinement: PoseFitSettings,
 ) -> Result<Refiner> {
     let postures = sets::fresh(estimator.rig(), &ground.hand, POSTURES, Augment::No).poses;
     Ok(Refiner::new(estimator.rig(), &ground.hand, &postures, refinement)?)
@@ -76,7 +77,7 @@ pub(crate) fn own_hands(
             frames.push(views.iter().map(|&view| all[view].clone()).collect());
         }
         // In these tests cameras stand elsewhere in every frame.
-        let own = calibrated(estimator, refiner, &frames, Moves::EveryFrame)?;
+        let own = calibrated(estimator, refiner, &frames, CameraMotion::PerFrame)?;
         progress.step();
         Ok(own)
     };
@@ -88,20 +89,20 @@ fn calibrated(
     estimator: &Estimator,
     refiner: &Refiner,
     frames: &[Vec<Silhouette>],
-    moves: Moves,
+    motion: CameraMotion,
 ) -> Result<Refiner> {
     let mut workspace = Workspace::default();
-    let frame = |seen: &Vec<Silhouette>| -> Result<CalibrationFrame> {
+    let frame = |seen: &Vec<Silhouette>| -> Result<BundleFrame> {
         let estimate = estimator.estimate_silhouettes(seen, &mut workspace)?;
         Ok(refiner.frame(&estimate)?)
     };
     let frames = frames.iter().map(frame).collect::<Result<Vec<_>>>()?;
-    let doubt = Doubt::default();
-    let cameras = doubt.cameras.map(|doubt| CameraDoubt { moves, ..doubt });
-    let calibration = Calibration { cameras, ..Calibration::default() };
+    let nuisance = NuisanceParameters::default();
+    let cameras = nuisance.cameras.map(|cameras| ExtrinsicsPrior { motion, ..cameras });
+    let calibration = BundleAdjustment { cameras, ..BundleAdjustment::default() };
     let own = refiner.calibrate(&calibration, &frames)?.hand;
-    let refinement = Refinement {
-        doubt: Some(Doubt { hand: Some(CALIBRATED), ..doubt }),
+    let refinement = PoseFitSettings {
+        nuisance: Some(NuisanceParameters { hand: Some(CALIBRATED), ..nuisance }),
         ..refiner.refinement().clone()
     };
     Ok(refiner.with_hand(&own)?.with_refinement(refinement))
@@ -116,5 +117,5 @@ pub(crate) fn own_hand_of_masks(
 ) -> Result<Refiner> {
     let count = frames.len().min(CALIBRATION_FRAMES);
     let some: Vec<_> = (0..count).map(|k| frames[k * frames.len() / count].clone()).collect();
-    calibrated(estimator, refiner, &some, Moves::Never)
+    calibrated(estimator, refiner, &some, CameraMotion::Static)
 }

@@ -7,7 +7,8 @@ use phalanx::{
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_refine::{
-    Calibration, CalibrationFrame, Evidence, HandDoubt, PosePrior, Refined, Refinement,
+    BundleAdjustment, BundleFrame, PoseFit, PoseFitSettings, PosePrior, ShapePrior,
+    SilhouetteObservation,
 };
 use rayon::prelude::*;
 
@@ -20,7 +21,7 @@ const CALIBRATED_ON: usize = 20;
 
 /// How far the hand's size and its proportions may be from the mean's, as logarithms. The size
 /// takes up that the calibration's unit is known roughly only.
-const HAND: HandDoubt = HandDoubt { size: 0.2, each: 0.06 };
+const HAND: ShapePrior = ShapePrior { size: 0.2, each: 0.06 };
 
 /// Standard deviation of a border's place in photographs, px: more than in drawn pictures, and over
 /// whole stretches of the border, so that what is seen outweighs what hands do less.
@@ -42,7 +43,7 @@ pub(super) struct Learnt {
 #[derive(Clone)]
 pub(super) struct Start {
     pub(super) estimate: Estimate,
-    evidence: Vec<Evidence>,
+    evidence: Vec<SilhouetteObservation>,
     prior: PosePrior,
 }
 
@@ -55,7 +56,7 @@ pub(super) fn learn(
 ) -> Result<Learnt> {
     let training = Training { framing: Framing::Window, ..Preset::Fast.training() };
     let set = sets::loosely_placed(rig, hand, samples);
-    let refiner = Refiner::new(rig, hand, &set.poses, Refinement::of_noise(NOISE_PX))?;
+    let refiner = Refiner::new(rig, hand, &set.poses, PoseFitSettings::of_noise(NOISE_PX))?;
     Ok(Learnt { estimator: trained(&training, &set, None, progress)?.estimator, refiner })
 }
 
@@ -72,15 +73,15 @@ impl Learnt {
     }
 
     /// The hand in some of the frames, from where they were refined to.
-    pub(super) fn calibrate(&self, starts: &[Start], refined: &[Refined]) -> Result<HandShape> {
+    pub(super) fn calibrate(&self, starts: &[Start], refined: &[PoseFit]) -> Result<HandShape> {
         let step = starts.len().div_ceil(CALIBRATED_ON).max(1);
-        let frame = |(start, refined): (&Start, &Refined)| -> Result<CalibrationFrame> {
+        let frame = |(start, refined): (&Start, &PoseFit)| -> Result<BundleFrame> {
             let Start { evidence, prior, .. } = start.clone();
-            Ok(CalibrationFrame { evidence, start: refined.pose, prior })
+            Ok(BundleFrame { observations: evidence, start: refined.pose, prior })
         };
-        let frames: Vec<CalibrationFrame> =
+        let frames: Vec<BundleFrame> =
             starts.iter().zip(refined).step_by(step).map(frame).collect::<Result<_>>()?;
-        let calibration = Calibration { hand: HAND, ..Calibration::default() };
+        let calibration = BundleAdjustment { hand: HAND, ..BundleAdjustment::default() };
         Ok(calibration.run(self.refiner.hand(), self.refiner.rest(), &frames)?.hand)
     }
 
@@ -91,14 +92,14 @@ impl Learnt {
         hand: &HandShape,
         starts: &[Start],
         poses: impl Fn(usize) -> Vec<Pose> + Sync,
-    ) -> Result<Vec<Refined>> {
-        let alone = |k: usize, start: &Start| -> Result<Refined> {
+    ) -> Result<Vec<PoseFit>> {
+        let alone = |k: usize, start: &Start| -> Result<PoseFit> {
             let mean = self.from(hand, start, start.estimate.pose, &start.prior)?;
             poses(k).into_iter().try_fold(mean, |best, pose| {
                 Ok(better(best, self.from(hand, start, pose, &start.prior)?))
             })
         };
-        let mut refined: Vec<Refined> = starts
+        let mut refined: Vec<PoseFit> = starts
             .par_iter()
             .enumerate()
             .map(|(k, start)| alone(k, start))
@@ -117,18 +118,18 @@ impl Learnt {
         hand: &HandShape,
         start: &Start,
         frame: usize,
-        refined: &[Refined],
-    ) -> Result<Refined> {
+        refined: &[PoseFit],
+    ) -> Result<PoseFit> {
         let within =
             |dof: Dof| if dof.is_internal() { MOTION_DEG.to_radians() } else { f64::INFINITY };
         let moves = Dof::ALL.map(within);
         let mut prior = start.prior.clone();
         let around = frame.saturating_sub(1)..refined.len().min(frame + 2);
         for neighbour in around.clone().filter(|&other| other != frame) {
-            prior = prior.and(&PosePrior::independent(refined[neighbour].pose, &moves)?)?;
+            prior = prior.product(&PosePrior::independent(refined[neighbour].pose, &moves)?)?;
         }
-        let from = |fit: &Refined| self.from(hand, start, fit.pose, &prior);
-        let tried: Vec<Refined> = refined[around].par_iter().map(from).collect::<Result<_>>()?;
+        let from = |fit: &PoseFit| self.from(hand, start, fit.pose, &prior);
+        let tried: Vec<PoseFit> = refined[around].par_iter().map(from).collect::<Result<_>>()?;
         tried.into_iter().reduce(better).context("a frame is beside itself")
     }
 
@@ -139,9 +140,9 @@ impl Learnt {
         start: &Start,
         pose: Pose,
         prior: &PosePrior,
-    ) -> Result<Refined> {
+    ) -> Result<PoseFit> {
         let rest = self.refiner.rest();
-        Ok(self.refiner.refinement().run(hand, rest, &start.evidence, &pose, prior)?)
+        Ok(self.refiner.refinement().fit(hand, rest, &start.evidence, &pose, prior)?)
     }
 }
 
@@ -162,7 +163,7 @@ pub(super) fn postures(pose: &Pose) -> Vec<Pose> {
 }
 
 /// The more plausible of two.
-fn better(one: Refined, other: Refined) -> Refined {
+fn better(one: PoseFit, other: PoseFit) -> PoseFit {
     if other.energy < one.energy { other } else { one }
 }
 
@@ -174,8 +175,8 @@ pub(super) fn length_mm(hand: &HandShape) -> f64 {
 
 /// Means over frames of the least overlap of a frame's views, and the share of frames in which all
 /// views reach a goal.
-pub(super) fn overlaps(fitted: &[Refined], goal: f64) -> (f64, f64) {
-    let least = |fit: &Refined| fit.overlaps.iter().copied().fold(1.0, f64::min);
+pub(super) fn overlaps(fitted: &[PoseFit], goal: f64) -> (f64, f64) {
+    let least = |fit: &PoseFit| fit.ious.iter().copied().fold(1.0, f64::min);
     let count = fitted.len().max(1) as f64;
     let mean = fitted.iter().map(least).sum::<f64>() / count;
     let reached = fitted.iter().filter(|fit| least(fit) >= goal).count();

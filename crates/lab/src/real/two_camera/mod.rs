@@ -14,7 +14,7 @@ use image::{GrayImage, RgbImage};
 use phalanx::{Progress, Window, WindowFinder, Workspace};
 use phalanx_camera::{Rig, Volume, triangulate};
 use phalanx_hand::{Dof, HandShape, Pose, write_poses};
-use phalanx_refine::Refined;
+use phalanx_refine::PoseFit;
 use phalanx_segmentation::{Silhouette, SkinModel};
 
 use crate::data::sets;
@@ -130,7 +130,7 @@ fn fit(
         format!("{what}\n{}", angles::table(&found, &reference))
     };
     let poses_of =
-        |fitted: &[Refined]| -> Vec<Pose> { fitted.iter().map(|fit| fit.pose).collect() };
+        |fitted: &[PoseFit]| -> Vec<Pose> { fitted.iter().map(|fit| fit.pose).collect() };
     let mut report = vec![table("estimated", mean, &estimates)];
     for (round, (hand, fitted)) in rounds.iter().enumerate() {
         let what = said_of_round(round, hand, fitted);
@@ -154,8 +154,8 @@ fn fit(
 fn own_hand(
     learnt: &fit::Learnt,
     starts: &[fit::Start],
-    with_mean: &[Refined],
-) -> Result<Vec<(HandShape, Vec<Refined>)>> {
+    with_mean: &[PoseFit],
+) -> Result<Vec<(HandShape, Vec<PoseFit>)>> {
     let first = learnt.calibrate(starts, with_mean)?;
     let fitted = learnt.refine(&first, starts, |k| vec![with_mean[k].pose])?;
     let mut rounds = vec![(first, fitted)];
@@ -168,14 +168,14 @@ fn own_hand(
     Ok(rounds)
 }
 
-fn said_of_round(round: usize, own: &HandShape, fitted: &[Refined]) -> String {
+fn said_of_round(round: usize, own: &HandShape, fitted: &[PoseFit]) -> String {
     let energy: f64 = fitted.iter().map(|fit| fit.energy).sum();
     let length = fit::length_mm(own);
     format!("calibrated, round {}: {length:.0} mm long, energy {energy:.0}", round + 1)
 }
 
 /// How much of what was seen a hand covers, frame by frame.
-fn said_of(what: &str, hand: &HandShape, names: &[&str], fitted: &[Refined]) -> String {
+fn said_of(what: &str, hand: &HandShape, names: &[&str], fitted: &[PoseFit]) -> String {
     let (least, reached) = fit::overlaps(fitted, GOAL);
     let first = format!(
         "{what} hand, {:.0} mm long: least overlap of a frame's views {least:.3} on average; at least \
@@ -184,8 +184,8 @@ fn said_of(what: &str, hand: &HandShape, names: &[&str], fitted: &[Refined]) -> 
         100.0 * reached,
         fitted.len()
     );
-    let frame = |(name, fit): (&&str, &Refined)| {
-        let overlaps = fit.overlaps.iter().map(|overlap| format!("{overlap:.3}"));
+    let frame = |(name, fit): (&&str, &PoseFit)| {
+        let overlaps = fit.ious.iter().map(|overlap| format!("{overlap:.3}"));
         format!("  {name} {}\n", overlaps.collect::<Vec<_>>().join(" "))
     };
     std::iter::once(first).chain(names.iter().zip(fitted).map(frame)).collect()

@@ -12,7 +12,7 @@ use phalanx::{
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
-use phalanx_refine::Refinement;
+use phalanx_refine::PoseFitSettings;
 use phalanx_render::Renderer;
 use phalanx_rvm::{Stop, TwoStageSelection};
 use rayon::prelude::*;
@@ -119,7 +119,7 @@ impl Learning<'_> {
     /// What an estimator makes of the frames.
     fn estimates(&self, estimator: &Estimator, looks: &[&Look]) -> Result<Estimates> {
         let set = sets::loosely_placed(&self.rig, self.hand, self.samples);
-        let refiner = Refiner::new(&self.rig, self.hand, &set.poses, Refinement::default())?;
+        let refiner = Refiner::new(&self.rig, self.hand, &set.poses, PoseFitSettings::default())?;
         let both: Vec<(Pose, Pose)> = looks
             .par_iter()
             .filter_map(|look| look.seen.as_ref().ok())

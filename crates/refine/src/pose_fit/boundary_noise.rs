@@ -1,44 +1,49 @@
-//! How well borders are known, from how fits leave them.
+//! How well boundaries are known, from how fits leave them.
 
 use glam::{DAffine3, DVec2};
 use phalanx_hand::{HandShape, Pose};
 
 use crate::error::Result;
-use crate::geometry::correspondence::View;
-use crate::observation::silhouette::Evidence;
+use crate::geometry::correspondence::ViewMatcher;
+use crate::observation::silhouette::SilhouetteObservation;
 
-/// How far a view's observed border is from the border of a posed hand, place by place.
+/// How far a view's observed boundary is from the boundary of a posed hand, place by place.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BorderResiduals {
-    /// Where along the border, px.
+pub struct BoundaryResiduals {
+    /// Where along the boundary, px.
     places: Vec<DVec2>,
     /// How far outside the hand, px.
     residuals: Vec<f64>,
 }
 
-impl BorderResiduals {
+impl BoundaryResiduals {
     /// Of what one camera saw and a hand in a pose.
     ///
     /// # Errors
     /// A hand that the camera cannot draw.
-    pub fn of(hand: &HandShape, rest: &DAffine3, evidence: &Evidence, pose: &Pose) -> Result<Self> {
-        let mut view = View::new(evidence)?;
+    pub fn of(
+        hand: &HandShape,
+        rest: &DAffine3,
+        evidence: &SilhouetteObservation,
+        pose: &Pose,
+    ) -> Result<Self> {
+        let mut view = ViewMatcher::new(evidence)?;
         let posed = hand.pose(pose, rest);
-        view.compare(&posed.primitives, evidence, 1)?;
+        view.match_boundary(&posed.primitives, evidence, 1)?;
         let scale = evidence.pixels_per_mm(rest.transform_point3(pose.translation()));
-        let seen = view.matches.iter().zip(evidence.cracks());
+        let seen = view.correspondences.iter().zip(evidence.edges());
         let (residuals, places) =
-            seen.map(|(found, &place)| (scale * found.passing.distance, place)).unzip();
+            seen.map(|(found, &place)| (scale * found.approach.distance, place)).unzip();
         Ok(Self { places, residuals })
     }
 }
 
-/// How well a border is known.
+/// How well a boundary is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BorderNoise {
-    /// Standard deviation of the border's place, px, robustly.
+pub struct BoundaryNoise {
+    /// Standard deviation of the boundary's place, px, robustly.
     pub deviation: f64,
-    /// How many places of a border, on average, tell no more than one does that errs independently.
+    /// How many places of a boundary, on average, tell no more than one does that errs independently.
     pub correlated: f64,
 }
 
@@ -48,17 +53,17 @@ const FARTHEST: usize = 40;
 /// The median of a normal distribution's distances from its middle is this share of the deviation.
 const MEDIAN_OF_NORMAL: f64 = 0.6745;
 
-/// Residuals further out than this many deviations are of something else than the border's noise.
+/// Residuals further out than this many deviations are of something else than the boundary's noise.
 const OUTLYING: f64 = 3.0;
 
-impl BorderNoise {
+impl BoundaryNoise {
     /// From the residuals of one view in some frames; `None` of no residual.
     ///
     /// The deviation is the median distance of residuals from their median, scaled as of a normal
     /// distribution. Places at a distance d err together by ρ(d), the mean product of their residuals
     /// over the mean square, up to where that is first not positive; n places then tell as much of
     /// their mean as n² / Σᵢⱼ ρ(dᵢⱼ) that are independent (Bayley and Hammersley 1946).
-    pub fn of(views: &[BorderResiduals]) -> Option<Self> {
+    pub fn of(views: &[BoundaryResiduals]) -> Option<Self> {
         let mut all: Vec<f64> = views.iter().flat_map(|view| view.residuals.clone()).collect();
         let middle = median(&mut all)?;
         let mut distances: Vec<f64> = all.iter().map(|value| (value - middle).abs()).collect();
