@@ -5,7 +5,7 @@ use glam::DAffine3;
 use image::GrayImage;
 use phalanx::{Error, Estimator, PartialTraining, decode_picture};
 use phalanx_camera::Rig;
-use phalanx_codebook::{AnyCoding, Coding, Scratch};
+use phalanx_codebook::{AnyEncoder, Encoder, Scratch};
 use phalanx_hand::{HandShape, Pose, PoseTable};
 use phalanx_io::calibration::{
     Calibration, Missing, Source, Unit, to_anipose_toml, to_opencv_yaml,
@@ -118,7 +118,7 @@ pub(crate) fn wrist_model(data: &[u8]) {
 
 /// A coding, and then a code.
 pub(crate) fn coding(data: &[u8]) {
-    let Ok(coding) = postcard::from_bytes::<AnyCoding>(data) else { return };
+    let Ok(coding) = postcard::from_bytes::<AnyEncoder>(data) else { return };
     let bins = coding.bins();
     let sample = vec![1.0 / bins as f32; bins];
     let mut code = vec![0.0; coding.dim()];

@@ -1,4 +1,4 @@
-//! K-means per iteration, on one thread, and the voting of one silhouette's contexts.
+//! K-means per iteration, on one thread, and the assignment of one silhouette's contexts.
 
 #[path = "../tests/histograms/mod.rs"]
 mod histograms;
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use criterion::{Criterion, SamplingMode, criterion_group, criterion_main};
 use histograms::{DIM, histograms};
-use phalanx_codebook::{KMeans, Metric, Scratch, Voting};
+use phalanx_codebook::{KMeans, Metric, Scratch, SoftAssignment};
 
 /// Short enough for one run a sample.
 const KMEANS_TIME: Duration = Duration::from_millis(100);
@@ -40,7 +40,7 @@ fn kmeans(c: &mut Criterion) {
     }
 }
 
-fn voting(c: &mut Criterion) {
+fn assignment(c: &mut Criterion) {
     let training = histograms(5_000, 2);
     let contexts = histograms(300, 3);
     let mut group = c.benchmark_group("votes of 300 contexts");
@@ -51,12 +51,12 @@ fn voting(c: &mut Criterion) {
         let mut votes = vec![0.0; centres];
         for neighbours in [3, 8, 30] {
             group.bench_function(format!("{neighbours} of {centres} centres"), |b| {
-                let voting = Voting { neighbours };
-                b.iter(|| codebook.soft_assign(&contexts, voting, &mut scratch, &mut votes));
+                let assignment = SoftAssignment { neighbours };
+                b.iter(|| codebook.soft_assign(&contexts, assignment, &mut scratch, &mut votes));
             });
         }
     }
 }
 
-criterion_group!(benches, kmeans, voting);
+criterion_group!(benches, kmeans, assignment);
 criterion_main!(benches);

@@ -4,8 +4,8 @@
 //! `cargo run --release -p phalanx-codebook --example textures`
 
 use phalanx_codebook::{
-    AnyCoding, Coding, Error, ExpectationMaximisation, Fisher, KMeans, Metric, Scratch, Vlad,
-    Voting, squared_euclidean,
+    AnyEncoder, Encoder, Error, ExpectationMaximisation, Fisher, KMeans, Metric, Scratch,
+    SoftAssignment, Vlad, squared_euclidean,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64;
@@ -31,7 +31,7 @@ fn patches(texture: usize, count: usize, seed: u64) -> Vec<f32> {
     (0..count).flat_map(strip).collect()
 }
 
-fn code(coding: &AnyCoding, samples: &[f32]) -> Result<Vec<f32>, Error> {
+fn code(coding: &AnyEncoder, samples: &[f32]) -> Result<Vec<f32>, Error> {
     let mut code = vec![0.0; coding.dim()];
     coding.encode(samples, &mut Scratch::default(), &mut code)?;
     Ok(code.into_iter().map(|value| value as f32).collect())
@@ -44,13 +44,14 @@ fn main() -> Result<(), Error> {
         Ok(kmeans.fit(&training, PATCH)?.codebook)
     };
     let em = ExpectationMaximisation { components: 16, ..ExpectationMaximisation::default() };
-    let counts =
-        |voting| -> Result<_, Error> { Ok(AnyCoding::Counts { codebook: codebook(64)?, voting }) };
+    let counts = |assignment| -> Result<_, Error> {
+        Ok(AnyEncoder::SoftHistogram { codebook: codebook(64)?, assignment })
+    };
     let codings = [
-        ("hard votes, 64 centres", counts(Voting::HARD)?),
-        ("soft votes, 64 centres", counts(Voting::default())?),
-        ("residuals, 16 centres", AnyCoding::Vlad(Vlad { codebook: codebook(16)? })),
-        ("Fisher, 16 Gaussians", AnyCoding::Fisher(Fisher { mixture: em.fit(&training, PATCH)? })),
+        ("hard votes, 64 centres", counts(SoftAssignment::HARD)?),
+        ("soft votes, 64 centres", counts(SoftAssignment::default())?),
+        ("residuals, 16 centres", AnyEncoder::Vlad(Vlad { codebook: codebook(16)? })),
+        ("Fisher, 16 Gaussians", AnyEncoder::Fisher(Fisher { mixture: em.fit(&training, PATCH)? })),
     ];
     for (name, coding) in codings {
         let known = (0..TEXTURES)

@@ -1,8 +1,9 @@
 //! Everything public can be sent to, and shared between, threads.
 
 use phalanx_codebook::{
-    AnyCoding, Codebook, Error, ExpectationMaximisation, Fisher, Fit, FixedRadius, GaussianMixture,
-    KMeans, Metric, MiniBatch, MixtureParts, Nearest, Report, Scratch, SoftCounts, Vlad, Voting,
+    AnyEncoder, Codebook, Error, ExpectationMaximisation, Fisher, Fit, FixedRadius,
+    GaussianMixture, KMeans, Metric, MiniBatch, MixtureParts, Nearest, Report, Scratch,
+    SoftAssignment, SoftHistogram, Vlad,
 };
 
 const fn shared<T: Send + Sync>() {}
@@ -13,7 +14,7 @@ macro_rules! shared {
 
 // A type that is not makes the tests fail to compile.
 shared!(
-    AnyCoding,
+    AnyEncoder,
     Codebook,
     Error,
     ExpectationMaximisation,
@@ -28,7 +29,7 @@ shared!(
     Nearest,
     Report,
     Scratch,
-    SoftCounts,
+    SoftHistogram,
     Vlad,
-    Voting,
+    SoftAssignment,
 );

@@ -5,8 +5,8 @@ mod property;
 
 use histograms::{DIM, histograms};
 use phalanx_codebook::{
-    Codebook, Coding, Error, FixedRadius, KMeans, Metric, MiniBatch, Scratch, SoftCounts, Vlad,
-    Voting, squared_euclidean,
+    Codebook, Encoder, Error, FixedRadius, KMeans, Metric, MiniBatch, Scratch, SoftAssignment,
+    SoftHistogram, Vlad, squared_euclidean,
 };
 use proptest::prelude::*;
 
@@ -151,7 +151,7 @@ fn votes_and_residuals_take_any_numbers() {
     let codebook = Codebook::with_metric(METRIC, centres, 2, 1.0).expect("a codebook");
     let samples = [-4.0, 1.0, 4.0, 1.0, 5.0, -1.0];
     let mut votes = [0.0; 2];
-    let counts = SoftCounts { codebook: &codebook, voting: Voting::HARD };
+    let counts = SoftHistogram { codebook: &codebook, assignment: SoftAssignment::HARD };
     counts.encode(&samples, &mut Scratch::default(), &mut votes).expect("votes");
     assert_eq!(votes, [1.0 / 3.0, 2.0 / 3.0]);
     let mut code = [0.0; 4];

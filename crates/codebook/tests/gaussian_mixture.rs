@@ -3,7 +3,7 @@
 mod property;
 
 use phalanx_codebook::{
-    AnyCoding, Coding, Error, ExpectationMaximisation, Fisher, GaussianMixture, MixtureParts,
+    AnyEncoder, Encoder, Error, ExpectationMaximisation, Fisher, GaussianMixture, MixtureParts,
     Scratch,
 };
 use proptest::prelude::*;
@@ -33,7 +33,7 @@ fn mixture(seed: u64) -> GaussianMixture {
     em.fit(&two(4000, seed), 2).expect("a mixture")
 }
 
-fn code(coding: &impl Coding, samples: &[f32]) -> Vec<f64> {
+fn code(coding: &impl Encoder, samples: &[f32]) -> Vec<f64> {
     let mut out = vec![f64::NAN; coding.dim()];
     coding.encode(samples, &mut Scratch::default(), &mut out).expect("a code");
     out
@@ -122,9 +122,9 @@ fn parts_and_bytes_give_the_mixture_back_and_bad_ones_are_refused() {
     let mixture = mixture(4);
     let parts = mixture.parts().clone();
     assert_eq!(GaussianMixture::from_parts(parts.clone()).as_ref(), Ok(&mixture));
-    let coding = AnyCoding::Fisher(Fisher { mixture });
+    let coding = AnyEncoder::Fisher(Fisher { mixture });
     let bytes = postcard::to_stdvec(&coding).expect("bytes");
-    assert_eq!(postcard::from_bytes::<AnyCoding>(&bytes).expect("a coding"), coding);
+    assert_eq!(postcard::from_bytes::<AnyEncoder>(&bytes).expect("a coding"), coding);
     assert_eq!((coding.bins(), coding.dim()), (2, 8));
 
     let error = |change: &dyn Fn(&mut MixtureParts)| {

@@ -4,7 +4,7 @@ mod histograms;
 mod property;
 
 use histograms::{DIM, histograms};
-use phalanx_codebook::{AnyCoding, Codebook, Coding, Error, Scratch, Vlad, Voting};
+use phalanx_codebook::{AnyEncoder, Codebook, Encoder, Error, Scratch, SoftAssignment, Vlad};
 use proptest::prelude::*;
 
 fn vlad(centres: usize, seed: u64) -> Vlad {
@@ -13,7 +13,7 @@ fn vlad(centres: usize, seed: u64) -> Vlad {
     }
 }
 
-fn code(coding: &impl Coding, samples: &[f32]) -> Vec<f64> {
+fn code(coding: &impl Encoder, samples: &[f32]) -> Vec<f64> {
     let mut out = vec![f64::NAN; coding.dim()];
     coding.encode(samples, &mut Scratch::default(), &mut out).expect("a code");
     out
@@ -92,15 +92,15 @@ fn samples_at_their_centres_have_a_code_of_zeros() {
 fn any_coding_is_what_it_wraps() {
     let (vlad, samples) = (vlad(9, 5), histograms(11, 6));
     let codebook = vlad.codebook.clone();
-    let voting = Voting { neighbours: 4 };
+    let assignment = SoftAssignment { neighbours: 4 };
     let mut votes = vec![0.0; 9];
-    codebook.soft_assign(&samples, voting, &mut Scratch::default(), &mut votes).expect("votes");
-    assert_eq!(code(&AnyCoding::Counts { codebook, voting }, &samples), votes);
-    let any = AnyCoding::Vlad(vlad.clone());
+    codebook.soft_assign(&samples, assignment, &mut Scratch::default(), &mut votes).expect("votes");
+    assert_eq!(code(&AnyEncoder::SoftHistogram { codebook, assignment }, &samples), votes);
+    let any = AnyEncoder::Vlad(vlad.clone());
     assert_eq!((any.bins(), any.dim()), (DIM, 9 * DIM));
     assert_eq!(code(&any, &samples), code(&vlad, &samples));
     let bytes = postcard::to_stdvec(&any).expect("bytes");
-    assert_eq!(postcard::from_bytes::<AnyCoding>(&bytes).expect("a coding"), any);
+    assert_eq!(postcard::from_bytes::<AnyEncoder>(&bytes).expect("a coding"), any);
 }
 
 #[test]

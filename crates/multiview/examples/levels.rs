@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use phalanx_multiview::{Error, Scratch, Vocabulary, mean};
+use phalanx_multiview::{CodebookTrainer, Error, Scratch, mean};
 
 const VIEWS: usize = 3;
 /// Points of the arc, and bins of the histogram that tells where one of them is seen.
@@ -23,7 +23,7 @@ fn main() -> Result<(), Error> {
         angles.iter().step_by(7).map(|angle| angle + 0.4_f64.to_radians()).collect();
     let known: Vec<Sample> = angles.iter().copied().map(sample).collect();
     let unknown: Vec<Sample> = tests.iter().copied().map(sample).collect();
-    let vocabulary = Vocabulary { centres: 30, ..Vocabulary::default() };
+    let vocabulary = CodebookTrainer { centres: 30, ..CodebookTrainer::default() };
 
     let pooled = vocabulary.pool(&known, BINS)?;
     let low =

@@ -2,7 +2,7 @@
 //! same numbers, the intermediate one refuses, the high level averages fewer.
 //! `cargo run -p phalanx-multiview --example missing_view`
 
-use phalanx_multiview::{Error, Estimate, Scratch, Vocabulary, inverse_variance};
+use phalanx_multiview::{CodebookTrainer, Error, Estimate, Scratch, inverse_variance};
 
 fn main() -> Result<(), Error> {
     // 60 samples of three views, six 4-bin histograms each.
@@ -13,7 +13,7 @@ fn main() -> Result<(), Error> {
     let view = |i: usize, v: usize| (i..i + 6).flat_map(|k| histogram(k + 11 * v)).collect();
     let samples: Vec<Vec<Vec<f32>>> =
         (0..60).map(|i| (0..3).map(|v| view(i, v)).collect()).collect();
-    let vocabulary = Vocabulary { centres: 18, ..Vocabulary::default() };
+    let vocabulary = CodebookTrainer { centres: 18, ..CodebookTrainer::default() };
     let (all, two) = (&samples[0][..], &samples[0][..2]);
     let mut scratch = Scratch::default();
 

@@ -78,15 +78,5 @@ pub enum Error {
     },
 }
 
-impl Error {
-    /// The same of the view of this number, where it names one.
-    pub(crate) fn in_view(self, view: usize) -> Self {
-        match self {
-            Self::View { reason, .. } => Self::View { view, reason },
-            other => other,
-        }
-    }
-}
-
 /// A result of this crate.
 pub type Result<T> = std::result::Result<T, Error>;

@@ -1,17 +1,15 @@
 #![doc = include_str!("../README.md")]
 
-mod codes;
+mod codebook_trainer;
 mod combination;
-mod concatenation;
 mod error;
-mod pooled;
+mod pooled_encoder;
 mod scratch;
-mod vocabulary;
+mod view_encoders;
 
-pub use codes::Codes;
+pub use codebook_trainer::CodebookTrainer;
 pub use combination::{Estimate, inverse_variance, mean};
-pub use concatenation::Concatenation;
 pub use error::{Error, Result};
-pub use pooled::Pooled;
+pub use pooled_encoder::PooledEncoder;
 pub use scratch::Scratch;
-pub use vocabulary::Vocabulary;
+pub use view_encoders::ViewEncoders;

@@ -1,6 +1,6 @@
 //! Everything public can be sent to, and shared between, threads.
 
-use phalanx_multiview::{Codes, Concatenation, Error, Estimate, Pooled, Scratch, Vocabulary};
+use phalanx_multiview::{CodebookTrainer, Error, Estimate, PooledEncoder, Scratch, ViewEncoders};
 
 const fn shared<T: Send + Sync>() {}
 
@@ -9,4 +9,4 @@ macro_rules! shared {
 }
 
 // A type that is not makes the tests fail to compile.
-shared!(Codes, Concatenation, Error, Estimate, Pooled, Scratch, Vocabulary,);
+shared!(ViewEncoders, Error, Estimate, PooledEncoder, Scratch, CodebookTrainer,);

@@ -2,8 +2,8 @@
 
 mod property;
 
-use phalanx_codebook::{Codebook, KMeans, Voting};
-use phalanx_multiview::{Concatenation, Error, Pooled, Scratch, Vocabulary};
+use phalanx_codebook::{AnyEncoder, Codebook, KMeans, SoftAssignment};
+use phalanx_multiview::{CodebookTrainer, Error, PooledEncoder, Scratch, ViewEncoders};
 use proptest::prelude::*;
 
 const BINS: usize = 6;
@@ -23,7 +23,7 @@ fn view(histograms: std::ops::Range<usize>) -> impl Strategy<Value = Vec<f32>> {
 }
 
 /// Codebooks of 4, 5, … centres, and a sample of as many views.
-fn joined_and_sample() -> impl Strategy<Value = (Concatenation, Views)> {
+fn joined_and_sample() -> impl Strategy<Value = (ViewEncoders, Views)> {
     (1_usize..4).prop_flat_map(|views| {
         let codebooks: Vec<_> = (0..views)
             .map(|v| {
@@ -32,21 +32,33 @@ fn joined_and_sample() -> impl Strategy<Value = (Concatenation, Views)> {
             })
             .collect();
         let joined = (codebooks, 1_usize..5).prop_map(|(codebooks, neighbours)| {
-            Concatenation::from_parts(codebooks, Voting { neighbours }).unwrap()
+            ViewEncoders::soft_histograms(codebooks, SoftAssignment { neighbours }).unwrap()
         });
         (joined, prop::collection::vec(view(1..12), views))
     })
 }
 
-fn describe(joined: &Concatenation, sample: &Views) -> Vec<f64> {
+fn describe(joined: &ViewEncoders, sample: &Views) -> Vec<f64> {
     let mut x = vec![f64::NAN; joined.dim()];
     joined.describe(sample, &mut Scratch::default(), &mut x).unwrap();
     x
 }
 
+/// How the contexts of each view vote.
+fn assignment(joined: &ViewEncoders) -> SoftAssignment {
+    match joined.views()[0] {
+        AnyEncoder::SoftHistogram { assignment, .. } => assignment,
+        _ => panic!("votes"),
+    }
+}
+
+fn owned(joined: &ViewEncoders) -> Vec<Codebook> {
+    joined.codebooks().into_iter().cloned().collect()
+}
+
 /// The parts of x, view by view.
-fn parts<'a>(joined: &Concatenation, mut x: &'a [f64]) -> Vec<&'a [f64]> {
-    let split = joined.codebooks().iter().map(|codebook| {
+fn parts<'a>(joined: &ViewEncoders, mut x: &'a [f64]) -> Vec<&'a [f64]> {
+    let split = joined.codebooks().into_iter().map(|codebook| {
         let (part, rest) = x.split_at(codebook.len());
         x = rest;
         part
@@ -74,7 +86,7 @@ proptest! {
         {
             let mut votes = vec![0.0; codebook.len()];
             let mut scratch = phalanx_codebook::Scratch::default();
-            codebook.soft_assign(contexts, joined.voting(), &mut scratch, &mut votes).unwrap();
+            codebook.soft_assign(contexts, assignment(&joined), &mut scratch, &mut votes).unwrap();
             prop_assert_eq!(part, votes.as_slice());
         }
     }
@@ -94,9 +106,9 @@ proptest! {
     fn views_in_another_order_give_the_parts_in_that_order(
         (joined, sample) in joined_and_sample()
     ) {
-        let mut codebooks = joined.codebooks().to_vec();
+        let mut codebooks = owned(&joined);
         codebooks.reverse();
-        let turned = Concatenation::from_parts(codebooks, joined.voting()).unwrap();
+        let turned = ViewEncoders::soft_histograms(codebooks, assignment(&joined)).unwrap();
         let backwards: Views = sample.iter().rev().cloned().collect();
         let (x, y) = (describe(&joined, &sample), describe(&turned, &backwards));
         let mut expected = parts(&joined, &x);
@@ -119,7 +131,7 @@ proptest! {
     #[test]
     fn stored_and_read_back_it_is_the_same((joined, _) in joined_and_sample()) {
         let text = serde_json::to_string(&joined).unwrap();
-        prop_assert_eq!(serde_json::from_str::<Concatenation>(&text).unwrap(), joined);
+        prop_assert_eq!(serde_json::from_str::<ViewEncoders>(&text).unwrap(), joined);
     }
 }
 
@@ -135,21 +147,20 @@ fn samples(views: usize) -> Vec<Views> {
     (0..30).map(|i| (0..views).map(|v| view(i, v)).collect()).collect()
 }
 
-fn vocabulary() -> Vocabulary {
-    Vocabulary { centres: 18, ..Vocabulary::default() }
+fn vocabulary() -> CodebookTrainer {
+    CodebookTrainer { centres: 18, ..CodebookTrainer::default() }
 }
 
 #[test]
 fn centres_are_shared_evenly() {
     for views in 1..=3 {
         let joined = vocabulary().fit(&samples(views), BINS).unwrap();
-        assert_eq!((joined.views(), joined.dim()), (views, 18));
+        assert_eq!((joined.views().len(), joined.dim()), (views, 18));
         assert!(joined.codebooks().iter().all(|codebook| codebook.len() == 18 / views));
     }
-    let vocabulary = Vocabulary { centres: 22, ..vocabulary() };
+    let vocabulary = CodebookTrainer { centres: 22, ..vocabulary() };
     let joined = vocabulary.fit(&samples(4), BINS).unwrap();
-    let shares: Vec<usize> =
-        joined.codebooks().iter().map(phalanx_codebook::Codebook::len).collect();
+    let shares: Vec<usize> = joined.codebooks().into_iter().map(Codebook::len).collect();
     assert_eq!(shares, [6, 6, 5, 5], "what is left over goes to the first views");
 }
 
@@ -170,7 +181,7 @@ fn views_are_learnt_apart() {
 fn the_seed_decides() {
     let fit = |seed| {
         let clustering = KMeans { seed, ..KMeans::default() };
-        Vocabulary { clustering, ..vocabulary() }.fit(&samples(2), BINS).unwrap()
+        CodebookTrainer { clustering, ..vocabulary() }.fit(&samples(2), BINS).unwrap()
     };
     assert_eq!(fit(1), fit(1));
     assert_ne!(fit(1), fit(2));
@@ -190,7 +201,8 @@ fn the_same_at_any_number_of_threads() {
 fn few_samples_are_taken_evenly() {
     // 240 histograms, of which 12 make 12 centres: those centres are the histograms themselves.
     let all = samples(1);
-    let few = Vocabulary { centres: 12, most_samples: 12, ..vocabulary() }.fit(&all, BINS).unwrap();
+    let few =
+        CodebookTrainer { centres: 12, most_samples: 12, ..vocabulary() }.fit(&all, BINS).unwrap();
     let flat: Vec<f32> = all.concat().concat();
     let spaced = flat.chunks_exact(BINS).step_by(20);
     for histogram in spaced {
@@ -201,7 +213,7 @@ fn few_samples_are_taken_evenly() {
 
 #[test]
 fn what_cannot_be_learnt_from_is_named() {
-    let message = |samples: &[Views], vocabulary: &Vocabulary, dim| {
+    let message = |samples: &[Views], vocabulary: &CodebookTrainer, dim| {
         vocabulary.fit(samples, dim).unwrap_err().to_string()
     };
     assert_eq!(message(&[], &vocabulary(), BINS), "there is no view");
@@ -216,13 +228,13 @@ fn what_cannot_be_learnt_from_is_named() {
         "sample 3, view 1: 47 numbers do not make shape contexts of 6"
     );
     assert!(matches!(vocabulary().fit(&samples(2), 0), Err(Error::Shape { dim: 0, .. })));
-    let none = Vocabulary { most_samples: 0, ..vocabulary() };
+    let none = CodebookTrainer { most_samples: 0, ..vocabulary() };
     assert_eq!(message(&samples(2), &none, BINS), "view 0: no samples");
     let mut bad = samples(2);
     bad[0][1][0] = f32::NAN;
     let message = message(&bad, &vocabulary(), BINS);
     assert!(message.starts_with("view 1: bin 0 of sample 0 is NaN"), "{message}");
-    let greedy = Vocabulary { voting: Voting { neighbours: 10 }, ..vocabulary() };
+    let greedy = CodebookTrainer { assignment: SoftAssignment { neighbours: 10 }, ..vocabulary() };
     assert_eq!(
         greedy.fit(&samples(2), BINS).unwrap_err().to_string(),
         "view 0: 10 neighbours among 9 centres"
@@ -272,8 +284,8 @@ fn pooling_forgets_which_view_saw_what() {
 fn pooling_is_learning_from_a_single_view_of_all_contexts() {
     let samples = samples(3);
     let flat: Vec<Views> = samples.iter().map(|views| vec![views.concat()]).collect();
-    let pooled = Vocabulary { most_samples: 50, ..vocabulary() }.pool(&samples, BINS).unwrap();
-    let again = Vocabulary { most_samples: 50, ..vocabulary() }.pool(&flat, BINS).unwrap();
+    let pooled = CodebookTrainer { most_samples: 50, ..vocabulary() }.pool(&samples, BINS).unwrap();
+    let again = CodebookTrainer { most_samples: 50, ..vocabulary() }.pool(&flat, BINS).unwrap();
     assert_eq!(pooled, again);
 }
 
@@ -290,31 +302,32 @@ fn what_cannot_be_pooled_is_named() {
     assert_eq!(describe(&[Vec::new()], 18).to_string(), "all views: no samples");
     assert!(matches!(vocabulary().pool::<Views, _>(&[], BINS), Err(Error::NoViews)));
     for neighbours in [0, 19] {
-        let parts = Pooled::from_parts(pooled.codebook().clone(), Voting { neighbours });
+        let parts =
+            PooledEncoder::from_parts(pooled.codebook().clone(), SoftAssignment { neighbours });
         assert!(matches!(parts, Err(Error::Pooled(_))));
     }
     let stored = serde_json::to_string(&pooled).unwrap();
-    assert_eq!(serde_json::from_str::<Pooled>(&stored).unwrap(), pooled);
+    assert_eq!(serde_json::from_str::<PooledEncoder>(&stored).unwrap(), pooled);
     let greedy = stored.replace(r#""neighbours":5"#, r#""neighbours":19"#);
-    let error = serde_json::from_str::<Pooled>(&greedy).unwrap_err().to_string();
+    let error = serde_json::from_str::<PooledEncoder>(&greedy).unwrap_err().to_string();
     assert!(error.contains("19 neighbours among 18 centres"), "{error}");
 }
 
 #[test]
 fn parts_that_do_not_fit_are_refused() {
     assert!(matches!(
-        Concatenation::from_parts(Vec::new(), Voting::default()),
+        ViewEncoders::soft_histograms(Vec::new(), SoftAssignment::default()),
         Err(Error::NoViews)
     ));
     let joined = vocabulary().fit(&samples(2), BINS).unwrap();
     for neighbours in [0, 10] {
-        let parts = Concatenation::from_parts(joined.codebooks().to_vec(), Voting { neighbours });
+        let parts = ViewEncoders::soft_histograms(owned(&joined), SoftAssignment { neighbours });
         assert!(matches!(parts, Err(Error::View { view: 0, .. })));
     }
     // What is read back is checked likewise.
     let stored = serde_json::to_string(&joined).unwrap();
     let greedy = stored.replace(r#""neighbours":5"#, r#""neighbours":10"#);
     assert_ne!(stored, greedy);
-    let error = serde_json::from_str::<Concatenation>(&greedy).unwrap_err().to_string();
+    let error = serde_json::from_str::<ViewEncoders>(&greedy).unwrap_err().to_string();
     assert!(error.contains("10 neighbours among 9 centres"), "{error}");
 }

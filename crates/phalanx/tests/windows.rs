@@ -11,7 +11,7 @@ use phalanx::{
 };
 use phalanx_camera::{Camera, Distortion, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
-use phalanx_multiview::Vocabulary;
+use phalanx_multiview::CodebookTrainer;
 use phalanx_refine::{PoseFitSettings, PosePrior};
 use phalanx_render::Renderer;
 use phalanx_segmentation::{LocatedHand, Silhouette};
@@ -49,7 +49,8 @@ fn unseen() -> [Pose; 5] {
 
 /// Thirty centres and little patience: enough for so few poses.
 fn training(framing: Framing) -> Training {
-    let mut vocabulary = Vocabulary { centres: 30, most_samples: 4000, ..Vocabulary::default() };
+    let mut vocabulary =
+        CodebookTrainer { centres: 30, most_samples: 4000, ..CodebookTrainer::default() };
     vocabulary.clustering.restarts = 1;
     Training { framing, vocabulary, ..Training::default() }
 }

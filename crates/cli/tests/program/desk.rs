@@ -10,7 +10,7 @@ use image::DynamicImage;
 use phalanx::{Estimator, NoProgress, Training, draw_silhouette};
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
-use phalanx_multiview::Vocabulary;
+use phalanx_multiview::CodebookTrainer;
 use phalanx_render::{Appearance, Renderer};
 use tempfile::TempDir;
 
@@ -34,7 +34,8 @@ pub(crate) fn closing(closed: f64) -> Pose {
 }
 
 static MODEL: LazyLock<Vec<u8>> = LazyLock::new(|| {
-    let mut vocabulary = Vocabulary { centres: 20, most_samples: 2000, ..Vocabulary::default() };
+    let mut vocabulary =
+        CodebookTrainer { centres: 20, most_samples: 2000, ..CodebookTrainer::default() };
     vocabulary.clustering.restarts = 1;
     let training = Training { vocabulary, ..Training::default() };
     let poses: Vec<_> = (0..16).map(|k| closing(f64::from(k) / 15.0)).collect();

@@ -3,23 +3,23 @@
 use serde::{Deserialize, Serialize};
 
 use crate::codebook::Codebook;
-use crate::encode::encoder::Coding;
+use crate::encode::encoder::Encoder;
 use crate::encode::fisher::Fisher;
 use crate::encode::scratch::Scratch;
-use crate::encode::soft_assignment::{SoftCounts, Voting};
+use crate::encode::soft_assignment::{SoftAssignment, SoftHistogram};
 use crate::encode::vlad::Vlad;
 use crate::error::Result;
 
-/// A coding of any kind, as it is stored.
+/// An encoder of any kind, as it is stored.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub enum AnyCoding {
+pub enum AnyEncoder {
     /// Votes into the centres of a codebook, hard or soft: the paper's.
-    Counts {
+    SoftHistogram {
         /// The centres.
         codebook: Codebook,
         /// How samples vote.
-        voting: Voting,
+        assignment: SoftAssignment,
     },
     /// Residuals to the nearest centres.
     Vlad(Vlad),
@@ -27,10 +27,20 @@ pub enum AnyCoding {
     Fisher(Fisher),
 }
 
-impl Coding for AnyCoding {
+impl AnyEncoder {
+    /// The codebook, of all but Fisher vectors.
+    pub fn codebook(&self) -> Option<&Codebook> {
+        match self {
+            Self::SoftHistogram { codebook, .. } | Self::Vlad(Vlad { codebook }) => Some(codebook),
+            Self::Fisher(_) => None,
+        }
+    }
+}
+
+impl Encoder for AnyEncoder {
     fn bins(&self) -> usize {
         match self {
-            Self::Counts { codebook, .. } => codebook.dim(),
+            Self::SoftHistogram { codebook, .. } => codebook.dim(),
             Self::Vlad(vlad) => vlad.bins(),
             Self::Fisher(fisher) => fisher.bins(),
         }
@@ -38,7 +48,7 @@ impl Coding for AnyCoding {
 
     fn dim(&self) -> usize {
         match self {
-            Self::Counts { codebook, .. } => codebook.len(),
+            Self::SoftHistogram { codebook, .. } => codebook.len(),
             Self::Vlad(vlad) => vlad.dim(),
             Self::Fisher(fisher) => fisher.dim(),
         }
@@ -46,8 +56,8 @@ impl Coding for AnyCoding {
 
     fn encode(&self, samples: &[f32], scratch: &mut Scratch, out: &mut [f64]) -> Result<()> {
         match self {
-            Self::Counts { codebook, voting } => {
-                SoftCounts { codebook, voting: *voting }.encode(samples, scratch, out)
+            Self::SoftHistogram { codebook, assignment } => {
+                SoftHistogram { codebook, assignment: *assignment }.encode(samples, scratch, out)
             }
             Self::Vlad(vlad) => vlad.encode(samples, scratch, out),
             Self::Fisher(fisher) => fisher.encode(samples, scratch, out),

@@ -4,19 +4,19 @@ use crate::error::{Error, Result};
 /// Something that turns any number of samples into a vector of fixed length, whatever their order.
 ///
 /// ```
-/// use phalanx_codebook::{Codebook, Coding, Scratch, SoftCounts, Vlad, Voting};
+/// use phalanx_codebook::{Codebook, Encoder, Scratch, SoftHistogram, Vlad, SoftAssignment};
 ///
 /// let codebook = Codebook::from_parts(vec![1.0, 0.0, 0.0, 1.0], 2, 0.1)?;
-/// let votes = SoftCounts { codebook: &codebook, voting: Voting::HARD };
+/// let votes = SoftHistogram { codebook: &codebook, assignment: SoftAssignment::HARD };
 /// let residuals = Vlad { codebook: codebook.clone() };
-/// for (coding, length) in [(&votes as &dyn Coding, 2), (&residuals, 4)] {
-///     let mut code = vec![0.0; coding.dim()];
-///     coding.encode(&[0.9, 0.1, 0.2, 0.8], &mut Scratch::default(), &mut code)?;
+/// for (encoder, length) in [(&votes as &dyn Encoder, 2), (&residuals, 4)] {
+///     let mut code = vec![0.0; encoder.dim()];
+///     encoder.encode(&[0.9, 0.1, 0.2, 0.8], &mut Scratch::default(), &mut code)?;
 ///     assert_eq!(code.len(), length);
 /// }
 /// # Ok::<(), phalanx_codebook::Error>(())
 /// ```
-pub trait Coding {
+pub trait Encoder {
     /// The number of bins of a sample.
     fn bins(&self) -> usize;
 
@@ -26,7 +26,8 @@ pub trait Coding {
     /// The code of samples given one after the other, written to `out`.
     ///
     /// # Errors
-    /// No samples, not a whole number of them, one that the coding cannot compare, or an output of another length than [`dim`](Self::dim).
+    /// No samples, not a whole number of them, one that the encoder cannot compare, or an output of
+    /// another length than [`dim`](Self::dim).
     fn encode(&self, samples: &[f32], scratch: &mut Scratch, out: &mut [f64]) -> Result<()>;
 }
 

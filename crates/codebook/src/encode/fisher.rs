@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::cluster::gaussian_mixture::GaussianMixture;
 use crate::distance::metric::Metric;
-use crate::encode::encoder::{Coding, check_length, normalise};
+use crate::encode::encoder::{Encoder, check_length, normalise};
 use crate::encode::scratch::Scratch;
 use crate::error::Result;
 use crate::samples;
@@ -14,7 +14,7 @@ use crate::samples;
 /// kept, and the whole has length 1; the derivative by the weights says little and is left out.
 ///
 /// ```
-/// use phalanx_codebook::{Coding, Fisher, GaussianMixture, MixtureParts, Scratch};
+/// use phalanx_codebook::{Encoder, Fisher, GaussianMixture, MixtureParts, Scratch};
 ///
 /// let (weights, means, variances) = (vec![1.0], vec![0.0], vec![1.0]);
 /// let mixture = GaussianMixture::from_parts(MixtureParts { dim: 1, weights, means, variances })?;
@@ -30,7 +30,7 @@ pub struct Fisher {
     pub mixture: GaussianMixture,
 }
 
-impl Coding for Fisher {
+impl Encoder for Fisher {
     fn bins(&self) -> usize {
         self.mixture.dim()
     }

@@ -2,7 +2,7 @@ use pulp::Arch;
 use serde::{Deserialize, Serialize};
 
 use crate::codebook::Codebook;
-use crate::encode::encoder::Coding;
+use crate::encode::encoder::Encoder;
 use crate::encode::nearest::{Rank, find_nearest};
 use crate::encode::scratch::Scratch;
 use crate::error::{Error, Result};
@@ -10,34 +10,34 @@ use crate::samples;
 
 /// How samples vote.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub struct Voting {
+pub struct SoftAssignment {
     /// Into how many of the nearest centres each sample votes, 1 to K; with 1, as in
     /// [`HARD`](Self::HARD), every vote is whole: a histogram of nearest centres.
     pub neighbours: usize,
 }
 
-impl Voting {
+impl SoftAssignment {
     /// Hard assignment: each sample's whole vote goes to the nearest centre.
     pub const HARD: Self = Self { neighbours: 1 };
 }
 
-impl Default for Voting {
+impl Default for SoftAssignment {
     /// Five neighbours.
     fn default() -> Self {
         Self { neighbours: 5 }
     }
 }
 
-/// Soft votes into a codebook's centres, as a coding like any other.
+/// Soft votes into a codebook's centres, as an encoder like any other.
 #[derive(Debug, Clone, Copy)]
-pub struct SoftCounts<'a> {
+pub struct SoftHistogram<'a> {
     /// The centres.
     pub codebook: &'a Codebook,
     /// How samples vote.
-    pub voting: Voting,
+    pub assignment: SoftAssignment,
 }
 
-impl Coding for SoftCounts<'_> {
+impl Encoder for SoftHistogram<'_> {
     fn bins(&self) -> usize {
         self.codebook.dim()
     }
@@ -47,7 +47,7 @@ impl Coding for SoftCounts<'_> {
     }
 
     fn encode(&self, samples: &[f32], scratch: &mut Scratch, out: &mut [f64]) -> Result<()> {
-        self.codebook.soft_assign(samples, self.voting, scratch, out)
+        self.codebook.soft_assign(samples, self.assignment, scratch, out)
     }
 }
 
@@ -65,12 +65,12 @@ impl Codebook {
     /// neighbours or more than centres, or an output of another length than the centres'.
     ///
     /// ```
-    /// use phalanx_codebook::{Codebook, Scratch, Voting};
+    /// use phalanx_codebook::{Codebook, Scratch, SoftAssignment};
     ///
     /// let codebook = Codebook::from_parts(vec![1.0, 0.0, 0.0, 1.0], 2, 0.5)?;
     /// let samples = [1.0, 0.0, 0.5, 0.5]; // one is a centre, the other halfway
     /// let mut votes = [0.0; 2];
-    /// codebook.soft_assign(&samples, Voting { neighbours: 2 }, &mut Scratch::default(), &mut votes)?;
+    /// codebook.soft_assign(&samples, SoftAssignment { neighbours: 2 }, &mut Scratch::default(), &mut votes)?;
     /// assert!(votes[0] > votes[1] && votes[1] > 0.25);
     /// assert!((votes[0] + votes[1] - 1.0).abs() < 1e-12);
     /// # Ok::<(), phalanx_codebook::Error>(())
@@ -78,11 +78,11 @@ impl Codebook {
     pub fn soft_assign(
         &self,
         samples: &[f32],
-        voting: Voting,
+        assignment: SoftAssignment,
         scratch: &mut Scratch,
         out: &mut [f64],
     ) -> Result<()> {
-        let Voting { neighbours } = voting;
+        let SoftAssignment { neighbours } = assignment;
         let centres = self.len();
         if neighbours == 0 || neighbours > centres {
             return Err(Error::Neighbours { neighbours, centres });

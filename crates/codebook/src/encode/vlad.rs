@@ -2,7 +2,7 @@ use pulp::Arch;
 use serde::{Deserialize, Serialize};
 
 use crate::codebook::{Codebook, first_equal};
-use crate::encode::encoder::{Coding, check_length, normalise};
+use crate::encode::encoder::{Encoder, check_length, normalise};
 use crate::encode::scratch::Scratch;
 use crate::error::Result;
 use crate::samples;
@@ -15,7 +15,7 @@ use crate::samples;
 /// kept, so that no frequent sample drowns the others, and the whole has length 1.
 ///
 /// ```
-/// use phalanx_codebook::{Codebook, Coding, Metric, Scratch, Vlad};
+/// use phalanx_codebook::{Codebook, Encoder, Metric, Scratch, Vlad};
 ///
 /// let codebook = Codebook::with_metric(Metric::Euclidean, vec![0.0, 10.0], 1, 1.0)?;
 /// let mut code = [0.0; 2];
@@ -30,7 +30,7 @@ pub struct Vlad {
     pub codebook: Codebook,
 }
 
-impl Coding for Vlad {
+impl Encoder for Vlad {
     fn bins(&self) -> usize {
         self.codebook.dim()
     }

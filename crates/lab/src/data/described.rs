@@ -5,7 +5,7 @@ use faer::Mat;
 use phalanx::PoseContexts;
 use phalanx_codebook::KMeans;
 use phalanx_hand::{Digit, Dof, Pose};
-use phalanx_multiview::{Concatenation, Vocabulary};
+use phalanx_multiview::{CodebookTrainer, ViewEncoders};
 use phalanx_shape_context::BINS;
 
 use crate::data::split::Split;
@@ -47,7 +47,7 @@ impl Samples {
 
 /// The two halves of a split. Codebooks see the training half only.
 pub(crate) struct Halves {
-    pub(crate) codebooks: Concatenation,
+    pub(crate) codebooks: ViewEncoders,
     pub(crate) train: Samples,
     pub(crate) test: Samples,
 }
@@ -65,7 +65,7 @@ impl Described {
     }
 
     /// All samples as some of the cameras see them, with codebooks learnt from all of them.
-    pub(crate) fn whole(&self, views: &[usize], seed: u64) -> Result<(Concatenation, Samples)> {
+    pub(crate) fn whole(&self, views: &[usize], seed: u64) -> Result<(ViewEncoders, Samples)> {
         let all: Vec<usize> = (0..self.poses.len()).collect();
         let codebooks = self.codebooks(views, &all, seed)?;
         let samples = self.samples(&codebooks, views, &all)?;
@@ -73,14 +73,14 @@ impl Described {
     }
 
     /// The paper's codebooks, learnt from some samples.
-    fn codebooks(&self, views: &[usize], samples: &[usize], seed: u64) -> Result<Concatenation> {
+    fn codebooks(&self, views: &[usize], samples: &[usize], seed: u64) -> Result<ViewEncoders> {
         Ok(vocabulary(seed).fit(&self.seen(views, samples), BINS)?)
     }
 
     /// Descriptors and poses of some samples.
     fn samples(
         &self,
-        codebooks: &Concatenation,
+        codebooks: &ViewEncoders,
         views: &[usize],
         samples: &[usize],
     ) -> Result<Samples> {
@@ -97,7 +97,7 @@ impl Described {
 }
 
 /// The paper's vocabulary, clustered from this seed.
-pub(crate) fn vocabulary(seed: u64) -> Vocabulary {
-    let default = Vocabulary::default();
-    Vocabulary { clustering: KMeans { seed, ..default.clustering }, ..default }
+pub(crate) fn vocabulary(seed: u64) -> CodebookTrainer {
+    let default = CodebookTrainer::default();
+    CodebookTrainer { clustering: KMeans { seed, ..default.clustering }, ..default }
 }

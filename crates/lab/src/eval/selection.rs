@@ -6,7 +6,7 @@ use clap::Args;
 use comfy_table::{Table, presets};
 use faer::Mat;
 use phalanx::OrientationRule;
-use phalanx_multiview::Vocabulary;
+use phalanx_multiview::CodebookTrainer;
 use phalanx_rvm::{
     AgarwalTriggs, Bandwidth, BasisSpec, Fit, Kernel, MultiOutputRvm, NystromRidge,
     OrthogonalLeastSquares, PilotSample, Ridge, Stop, SufficientStatistics, random_subset,
@@ -113,7 +113,7 @@ pub(crate) fn run(_: &Arguments) -> Result<()> {
     let train = sets::random(&rig, &hand, SAMPLES, Augment::Yes);
     let views: Vec<usize> = (0..rig.cameras.len()).collect();
     let contexts = pilot_contexts(&train, rule, &bar)?;
-    let books = [codebooks(&contexts, &views, &Vocabulary::default())?];
+    let books = [codebooks(&contexts, &views, &CodebookTrainer::default())?];
     drop(contexts);
     let seen = |set: &Set<'_>| -> Result<Samples> {
         Ok(describe(set, rule, &books, &bar)?.samples.swap_remove(0))

@@ -9,7 +9,7 @@ use phalanx::{
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Side};
-use phalanx_multiview::{Concatenation, Vocabulary};
+use phalanx_multiview::{CodebookTrainer, ViewEncoders};
 use phalanx_segmentation::{Silhouette, SkinModel};
 use phalanx_shape_context::BINS;
 use rayon::prelude::*;
@@ -146,7 +146,7 @@ struct Gallery {
     hand: HandShape,
     scenes: SceneList,
     out: Vec<Out>,
-    codebooks: Concatenation,
+    codebooks: ViewEncoders,
     x: faer::Mat<f64>,
 }
 
@@ -159,7 +159,7 @@ impl Gallery {
         let scenes = scenes(&rig, &hand, &out, 9);
         let contexts = describe_each(&rig, &scenes, OrientationRule::HandAxis, lab.progress)?;
         let contexts = contexts.into_iter().collect::<phalanx::Result<Vec<_>>>()?;
-        let codebooks = Vocabulary::default().fit(&contexts, BINS)?;
+        let codebooks = CodebookTrainer::default().fit(&contexts, BINS)?;
         let x = descriptors(&codebooks, &contexts)?;
         Ok(Self { rig, hand, scenes, out, codebooks, x })
     }

@@ -9,7 +9,7 @@ use image::{GrayImage, RgbImage};
 use phalanx::{ItemRng, PoseContexts, Scene, describe_each, descriptors, draw_silhouette};
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{HandShape, Pose};
-use phalanx_multiview::Vocabulary;
+use phalanx_multiview::CodebookTrainer;
 use phalanx_segmentation::Silhouette;
 use phalanx_shape_context::{BINS, hand_axis};
 use serde_json::json;
@@ -92,7 +92,7 @@ fn run(lab: &Lab<'_>) -> Result<Finding> {
              two of its standard errors; here these are at most {:.1} points. The paper \
              found tangents between pixels noisy; ours are fitted to seven points of the contour.",
                 NAMED.len(),
-                Vocabulary::default().centres,
+                CodebookTrainer::default().centres,
                 100.0 / NAMED.len() as f64,
                 100.0 * 2.0 * largest_error
             ),
@@ -156,7 +156,7 @@ impl Trial<'_> {
             let described = describe_each(self.rig, scenes, orientation.rule(), lab.progress)?;
             Ok(described.into_iter().collect::<phalanx::Result<_>>()?)
         };
-        let codebooks = Vocabulary::default().fit(&contexts(&self.codebook)?, BINS)?;
+        let codebooks = CodebookTrainer::default().fit(&contexts(&self.codebook)?, BINS)?;
         let gallery = descriptors(&codebooks, &contexts(&self.gallery)?)?;
         let queries = descriptors(&codebooks, &contexts(&self.queries)?)?;
         let found = nearest_by_chi_squared(gallery.as_ref(), queries.as_ref());

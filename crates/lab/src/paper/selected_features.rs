@@ -1,10 +1,10 @@
 //! Fig. 7: the few features that linear selection keeps, and which part of the hand they see.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use faer::Mat;
 use image::{Rgb, RgbImage};
 use phalanx::Describer;
-use phalanx_codebook::{Codebook, Scratch, Voting};
+use phalanx_codebook::{AnyEncoder, Encoder, Scratch};
 use phalanx_rvm::{AgarwalTriggs, Kernel, Stop};
 use phalanx_shape_context::BINS;
 use serde_json::json;
@@ -14,7 +14,7 @@ use super::voting_places::{Place, along_the_hand, places, silhouette};
 use super::{Experiment, Figure, Finding, Table, Verdict};
 use crate::baselines::principal_axes::PrincipalAxes;
 use crate::context::Lab;
-use crate::data::described::Described;
+use crate::data::described::{Described, vocabulary};
 use crate::figures::chart::{Axis, Chart, Mark, Series};
 use crate::figures::mosaic::{magnified, mosaic, tinted};
 
@@ -41,8 +41,7 @@ struct Feature {
     /// Of the rig.
     camera: usize,
     centre: usize,
-    codebook: Codebook,
-    voting: Voting,
+    encoder: AnyEncoder,
 }
 
 /// What one split kept of some views.
@@ -149,14 +148,14 @@ fn select(
         ..AgarwalTriggs::default()
     };
     let fit = bridges.fit(halves.train.x.as_ref(), halves.train.y.as_ref())?;
-    let codebooks = halves.codebooks.codebooks();
-    let voting = halves.codebooks.voting();
     let mut features = Vec::new();
-    for (&camera, codebook) in views.iter().zip(codebooks) {
-        let places = places(described, camera, &along[camera], codebook, voting)?;
-        features.extend(places.into_iter().enumerate().map(|(centre, place)| {
-            (Feature { camera, centre, codebook: codebook.clone(), voting }, place)
-        }));
+    for (&camera, encoder) in views.iter().zip(halves.codebooks.views()) {
+        let places = places(described, camera, &along[camera], encoder)?;
+        features.extend(
+            places.into_iter().enumerate().map(|(centre, place)| {
+                (Feature { camera, centre, encoder: encoder.clone() }, place)
+            }),
+        );
     }
     let a_view = features.len() / views.len();
     let near = features.iter().filter(|(_, place)| place.is_near_the_wrist()).count();
@@ -170,9 +169,9 @@ fn select(
 impl Feature {
     /// The part of each contour point's vote that this centre gets, 0 to 1.
     fn votes(&self, contexts: &[f32]) -> Result<Vec<f64>> {
-        let (mut scratch, mut all) = (Scratch::default(), vec![0.0; self.codebook.len()]);
+        let (mut scratch, mut all) = (Scratch::default(), vec![0.0; self.encoder.dim()]);
         let vote = |context: &[f32]| {
-            self.codebook.soft_assign(context, self.voting, &mut scratch, &mut all)?;
+            self.encoder.encode(context, &mut scratch, &mut all)?;
             Ok(all[self.centre])
         };
         contexts.chunks(BINS).map(vote).collect()
@@ -276,7 +275,7 @@ fn silhouettes(lab: &Lab<'_>, described: &Described, selection: &Selection) -> R
         let silhouette = silhouette(camera, &lab.hand, pose, &rest, &mut Describer::default())?;
         let votes = feature.votes(&described.contexts[shown][feature.camera])?;
         let mut panel = tinted(&silhouette.mask, [92, 104, 118]);
-        let equal_share = 1.0 / feature.voting.neighbours as f64;
+        let equal_share = 1.0 / vocabulary(selection.split).assignment.neighbours as f64;
         for (&[x, y], vote) in silhouette.contour.points.iter().zip(votes) {
             let colour = if vote > equal_share { [255, 60, 60] } else { [235, 235, 235] };
             panel.put_pixel(x as u32, y as u32, Rgb(colour));
@@ -305,7 +304,8 @@ fn scatter(lab: &Lab<'_>, described: &Described, feature: &Feature) -> Result<Fi
     let stride = (of_camera() / SCATTERED).max(1);
     let contexts = described.contexts.iter().flat_map(|seen| seen[feature.camera].chunks(BINS));
     let contexts: Vec<&[f32]> = contexts.step_by(stride).collect();
-    let centres: Vec<&[f32]> = feature.codebook.centres().chunks(BINS).collect();
+    let codebook = feature.encoder.codebook().context("votes have a codebook")?;
+    let centres: Vec<&[f32]> = codebook.centres().chunks(BINS).collect();
     let all: Vec<&[f32]> = contexts.iter().chain(&centres).copied().collect();
     let axes =
         PrincipalAxes::of(Mat::from_fn(BINS, all.len(), |k, i| f64::from(all[i][k])).as_ref())?;

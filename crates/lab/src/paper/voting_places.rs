@@ -4,7 +4,7 @@ use anyhow::{Context, Result, ensure};
 use glam::{DAffine3, DVec2, DVec3};
 use phalanx::{Describer, Picture, draw_silhouette, working_camera};
 use phalanx_camera::Camera;
-use phalanx_codebook::{Codebook, Scratch, Voting};
+use phalanx_codebook::{AnyEncoder, Encoder, Scratch};
 use phalanx_hand::{HandShape, Pose};
 use phalanx_segmentation::Silhouette;
 use phalanx_shape_context::BINS;
@@ -35,8 +35,7 @@ pub(super) fn places(
     described: &Described,
     camera: usize,
     along: &[Vec<f64>],
-    codebook: &Codebook,
-    voting: Voting,
+    encoder: &AnyEncoder,
 ) -> Result<Vec<Place>> {
     /// Sums over contour points: the votes for each centre, those times the distances from wrist
     /// and tip, and the distances from the wrist.
@@ -45,13 +44,13 @@ pub(super) fn places(
         points: [f64; 2],
     }
     let of_pose = |scratch: &mut Scratch, pose: usize| -> Result<Sums> {
-        let (along, mut x) = (&along[pose], vec![0.0; codebook.len()]);
+        let (along, mut x) = (&along[pose], vec![0.0; encoder.dim()]);
         let contexts = described.contexts[pose][camera].chunks(BINS);
         ensure!(contexts.len() == along.len(), "pose {pose} was described otherwise");
         let tip = along.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let mut sums = Sums { votes: vec![[0.0; 3]; codebook.len()], points: [0.0; 2] };
+        let mut sums = Sums { votes: vec![[0.0; 3]; encoder.dim()], points: [0.0; 2] };
         for (context, place) in contexts.zip(along) {
-            codebook.soft_assign(context, voting, scratch, &mut x)?;
+            encoder.encode(context, scratch, &mut x)?;
             for (sums, vote) in sums.votes.iter_mut().zip(&x) {
                 add(sums, [*vote, vote * place.abs(), vote * (tip - place)]);
             }
@@ -61,7 +60,7 @@ pub(super) fn places(
     };
     let poses: Vec<Result<Sums>> =
         (0..described.poses.len()).into_par_iter().map_init(Scratch::default, of_pose).collect();
-    let mut total = Sums { votes: vec![[0.0; 3]; codebook.len()], points: [0.0; 2] };
+    let mut total = Sums { votes: vec![[0.0; 3]; encoder.dim()], points: [0.0; 2] };
     for sums in poses {
         let sums = sums?;
         total.votes.iter_mut().zip(sums.votes).for_each(|(total, sum)| add(total, sum));

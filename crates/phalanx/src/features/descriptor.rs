@@ -1,8 +1,8 @@
 //! From the silhouettes of all views to the vector that a regressor reads.
 
 use phalanx_camera::Rig;
-use phalanx_codebook::Coding;
-use phalanx_multiview::{Codes, Scratch};
+use phalanx_codebook::Encoder;
+use phalanx_multiview::{Scratch, ViewEncoders};
 use phalanx_segmentation::Silhouette;
 use phalanx_shape_context::BINS;
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ use crate::synthesis::scene_describer::SceneDescriber;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Descriptor {
     view_config: ViewConfig,
-    codes: Codes,
+    codes: ViewEncoders,
     extra_features: ExtraFeatures,
 }
 
@@ -48,10 +48,10 @@ impl Descriptor {
     /// Puts a descriptor together.
     pub fn new(
         view_config: impl Into<ViewConfig>,
-        codes: impl Into<Codes>,
+        codes: ViewEncoders,
         extra_features: ExtraFeatures,
     ) -> Self {
-        Self { view_config: view_config.into(), codes: codes.into(), extra_features }
+        Self { view_config: view_config.into(), codes, extra_features }
     }
 
     /// Which way shape contexts are turned.
@@ -64,8 +64,8 @@ impl Descriptor {
         self.view_config
     }
 
-    /// The codings of the views' shape contexts.
-    pub fn codes(&self) -> &Codes {
+    /// The encoders of the views' shape contexts.
+    pub fn codes(&self) -> &ViewEncoders {
         &self.codes
     }
 
@@ -90,18 +90,18 @@ impl Descriptor {
             ExtraFeatures::Nothing => 0,
             ExtraFeatures::OccupancyGrid => self.views(),
         };
-        let codes = self.codes.views().iter().map(Coding::dim);
+        let codes = self.codes.views().iter().map(Encoder::dim);
         codes.chain(std::iter::repeat_n(OCCUPANCY, extra_features)).collect()
     }
 
-    /// Refuses codings of something other than shape contexts.
+    /// Refuses encoders of something other than shape contexts.
     pub(crate) fn check(&self, rig: &Rig) -> Result<()> {
         let (found, expected) = (self.views(), rig.cameras.len());
         if found != expected {
             return Err(Error::Mismatch { part: "codebooks", found, expected });
         }
-        for (camera, coding) in rig.cameras.iter().zip(self.codes.views()) {
-            let (found, expected) = (coding.bins(), BINS);
+        for (camera, encoder) in rig.cameras.iter().zip(self.codes.views()) {
+            let (found, expected) = (encoder.bins(), BINS);
             if found != expected {
                 return Err(Error::CodebookBins { camera: camera.name.clone(), found, expected });
             }

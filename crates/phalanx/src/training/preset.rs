@@ -1,7 +1,7 @@
 //! Trainings for those who do not want to choose.
 
 use phalanx_codebook::KMeans;
-use phalanx_multiview::Vocabulary;
+use phalanx_multiview::CodebookTrainer;
 use phalanx_rvm::{
     Bandwidth, ExpectedGradientOuterProduct, MlpTrainer, NystromRegularisation, NystromRidge,
     PredictiveDeviation,
@@ -65,10 +65,10 @@ impl Preset {
         Training {
             orientation: OrientationRule::default(),
             framing: Framing::default(),
-            vocabulary: Vocabulary {
+            vocabulary: CodebookTrainer {
                 centres: 48,
                 clustering: KMeans { restarts: 1, ..KMeans::default() },
-                ..Vocabulary::default()
+                ..CodebookTrainer::default()
             },
             encoding: Encoding::Vlad,
             regressor,

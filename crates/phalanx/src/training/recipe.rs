@@ -3,7 +3,7 @@
 use faer::Mat;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
-use phalanx_multiview::{Codes, Concatenation, Scratch, Vocabulary};
+use phalanx_multiview::{CodebookTrainer, Scratch, ViewEncoders};
 use phalanx_rvm::{Bandwidth, KernelRidge, Regularisation};
 use rayon::prelude::*;
 
@@ -31,7 +31,7 @@ pub struct Training {
     /// What of the pictures is looked at.
     pub framing: Framing,
     /// The codebooks.
-    pub vocabulary: Vocabulary,
+    pub vocabulary: CodebookTrainer,
     /// What is described with them.
     pub encoding: Encoding,
     /// The regressor.
@@ -53,7 +53,7 @@ impl Default for Training {
         Self {
             orientation: OrientationRule::default(),
             framing: Framing::default(),
-            vocabulary: Vocabulary::default(),
+            vocabulary: CodebookTrainer::default(),
             encoding: Encoding::SoftHistogram,
             regressor: RegressorConfig::KernelRidge(KernelRidge {
                 bandwidth: Bandwidth::Relative(0.5),
@@ -121,17 +121,15 @@ impl Training {
     /// The descriptor, with codebooks learnt from shape contexts.
     pub(crate) fn descriptor(&self, contexts: &[PoseContexts]) -> Result<Descriptor> {
         let (bins, view_config) = (phalanx_shape_context::BINS, self.view_config());
-        Ok(match self.encoding {
-            Encoding::SoftHistogram => Descriptor::new(
-                view_config,
-                self.vocabulary.fit(contexts, bins)?,
-                ExtraFeatures::Nothing,
-            ),
-            Encoding::Vlad => {
-                let codes: Codes = self.vocabulary.fit_residuals(contexts, bins)?;
-                Descriptor::new(view_config, codes, ExtraFeatures::OccupancyGrid)
+        let (encoders, features) = match self.encoding {
+            Encoding::SoftHistogram => {
+                (self.vocabulary.fit(contexts, bins)?, ExtraFeatures::Nothing)
             }
-        })
+            Encoding::Vlad => {
+                (self.vocabulary.fit_residuals(contexts, bins)?, ExtraFeatures::OccupancyGrid)
+            }
+        };
+        Ok(Descriptor::new(view_config, encoders, features))
     }
 }
 
@@ -139,7 +137,7 @@ impl Training {
 ///
 /// # Errors
 /// What the codebooks say of the contexts.
-pub fn descriptors<S, V>(views: &Concatenation, contexts: &[S]) -> Result<Mat<f64>>
+pub fn descriptors<S, V>(views: &ViewEncoders, contexts: &[S]) -> Result<Mat<f64>>
 where
     S: AsRef<[V]> + Sync,
     V: AsRef<[f32]>,

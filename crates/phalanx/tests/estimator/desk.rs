@@ -9,7 +9,7 @@ use phalanx::{
 };
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
-use phalanx_multiview::Vocabulary;
+use phalanx_multiview::CodebookTrainer;
 use phalanx_rvm::KernelRidge;
 
 /// A hand closed by a share of 0 to 1 and turned about the forearm.
@@ -54,7 +54,8 @@ pub(crate) fn top() -> Rig {
 
 /// Thirty centres and little patience: enough for so few poses.
 pub(crate) fn training(orientation: OrientationRule) -> Training {
-    let mut vocabulary = Vocabulary { centres: 30, most_samples: 4000, ..Vocabulary::default() };
+    let mut vocabulary =
+        CodebookTrainer { centres: 30, most_samples: 4000, ..CodebookTrainer::default() };
     vocabulary.clustering.restarts = 1;
     // The penalty by leave-one-out: what is asked about lies between what is learnt.
     let regressor = RegressorConfig::KernelRidge(KernelRidge::default());

@@ -2,8 +2,8 @@
 
 use image::{GrayImage, Luma, RgbImage};
 use phalanx::{Descriptor, Error, Estimator, ExtraFeatures, Picture, Segmenter, Workspace};
-use phalanx_codebook::{AnyCoding, Codebook, Voting};
-use phalanx_multiview::{Codes, Concatenation};
+use phalanx_codebook::{AnyEncoder, Codebook, SoftAssignment};
+use phalanx_multiview::ViewEncoders;
 use phalanx_rvm::Model;
 use phalanx_segmentation::{Error as Segmentation, Evidence, MIN_SIDE, SkinModel};
 
@@ -135,9 +135,9 @@ fn a_second_crossing_is_reported() {
     assert_eq!(found.observation.views[0].silhouette.forearm.crossings, 2);
 }
 
-fn codebook(coding: &AnyCoding) -> Codebook {
+fn codebook(coding: &AnyEncoder) -> Codebook {
     match coding {
-        AnyCoding::Counts { codebook, .. } => codebook.clone(),
+        AnyEncoder::SoftHistogram { codebook, .. } => codebook.clone(),
         other => panic!("the paper's estimator counts: {other:?}"),
     }
 }
@@ -145,7 +145,7 @@ fn codebook(coding: &AnyCoding) -> Codebook {
 #[test]
 fn parts_that_do_not_fit_are_refused() {
     let estimator = &*ESTIMATOR;
-    let together = |rig, codes: &Codes, model: &Model| {
+    let together = |rig, codes: &ViewEncoders, model: &Model| {
         let (hand, rule) = (estimator.hand().clone(), estimator.orientation());
         let descriptor = Descriptor::new(rule, codes.clone(), ExtraFeatures::Nothing);
         Estimator::from_parts(rig, hand, descriptor, model.clone())
@@ -159,7 +159,7 @@ fn parts_that_do_not_fit_are_refused() {
     let two = rig().select(&["side", "top"]).unwrap();
     let codebooks: Vec<Codebook> = codes.views().iter().map(codebook).collect();
     let views = |codebooks: &[Codebook]| {
-        Concatenation::from_parts(codebooks.to_vec(), Voting::default()).unwrap().into()
+        ViewEncoders::soft_histograms(codebooks.to_vec(), SoftAssignment::default()).unwrap()
     };
     assert_eq!(
         message(together(two, &views(&codebooks[..2]), model)),
@@ -185,7 +185,10 @@ fn parts_that_do_not_fit_are_refused() {
     let mut unusable = rig();
     unusable.cameras[0].intrinsics.fx = 0.0;
     assert!(matches!(together(unusable, codes, model), Err(Error::Rig(_))));
-    assert!(Concatenation::from_parts(codebooks.clone(), Voting { neighbours: 11 }).is_err());
+    assert!(
+        ViewEncoders::soft_histograms(codebooks.clone(), SoftAssignment { neighbours: 11 })
+            .is_err()
+    );
 }
 
 #[test]

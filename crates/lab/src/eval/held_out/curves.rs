@@ -5,7 +5,7 @@ use std::fmt::Write;
 use anyhow::Result;
 use comfy_table::{Table, presets};
 use phalanx::Progress;
-use phalanx_multiview::Vocabulary;
+use phalanx_multiview::CodebookTrainer;
 use serde::Serialize;
 
 use super::Ground;
@@ -53,7 +53,7 @@ pub(crate) fn points(ground: &Ground, progress: &dyn Progress) -> Result<Vec<Poi
 fn over_samples(set: &Set<'_>, ground: &Ground, progress: &dyn Progress) -> Result<Vec<Point>> {
     let contexts = pilot_contexts(set, ground.rule, progress)?;
     let views: Vec<usize> = (0..ground.rig.cameras.len()).collect();
-    let books = [codebooks(&contexts, &views, &Vocabulary::default())?];
+    let books = [codebooks(&contexts, &views, &CodebookTrainer::default())?];
     drop(contexts);
     let samples = describe(set, ground.rule, &books, progress)?.samples;
     let learners = SAMPLES.map(|count| {
@@ -70,7 +70,11 @@ fn over_centres(set: &Set<'_>, ground: &Ground, progress: &dyn Progress) -> Resu
     let views: Vec<usize> = (0..ground.rig.cameras.len()).collect();
     progress.begin("cluster shape contexts", CENTRES.len());
     let books = CENTRES.map(|centres| {
-        let books = codebooks(&contexts, &views, &Vocabulary { centres, ..Vocabulary::default() });
+        let books = codebooks(
+            &contexts,
+            &views,
+            &CodebookTrainer { centres, ..CodebookTrainer::default() },
+        );
         progress.step();
         books
     });

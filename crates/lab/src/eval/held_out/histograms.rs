@@ -2,7 +2,7 @@
 
 use phalanx::{Error, Progress, Result, SceneDescriber, SceneSource, ViewConfig};
 use phalanx_camera::Rig;
-use phalanx_multiview::{Concatenation, Scratch};
+use phalanx_multiview::{Scratch, ViewEncoders};
 use rayon::prelude::*;
 
 /// Codebooks of some of a rig's cameras.
@@ -11,7 +11,7 @@ pub(crate) struct ViewCodebooks {
     /// The cameras' numbers in the rig, in the order of the codebooks.
     pub(crate) views: Vec<usize>,
     /// Their codebooks.
-    pub(crate) codebooks: Concatenation,
+    pub(crate) codebooks: ViewEncoders,
 }
 
 impl ViewCodebooks {

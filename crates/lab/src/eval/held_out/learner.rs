@@ -7,7 +7,7 @@ use phalanx::{
     targets,
 };
 use phalanx_hand::Pose;
-use phalanx_multiview::Vocabulary;
+use phalanx_multiview::CodebookTrainer;
 use phalanx_shape_context::BINS;
 use rayon::prelude::*;
 
@@ -36,7 +36,8 @@ pub(crate) fn learn(
     progress: &dyn Progress,
 ) -> Result<Vec<Learner>> {
     let contexts = pilot_contexts(set, rule, progress)?;
-    let codebooks = views.iter().map(|views| codebooks(&contexts, views, &Vocabulary::default()));
+    let codebooks =
+        views.iter().map(|views| codebooks(&contexts, views, &CodebookTrainer::default()));
     let codebooks = codebooks.collect::<Result<Vec<_>>>()?;
     drop(contexts);
     let samples = describe(set, rule, &codebooks, progress)?.samples;
@@ -82,7 +83,7 @@ pub(crate) fn pilot_contexts(
 pub(crate) fn codebooks(
     contexts: &[PoseContexts],
     views: &[usize],
-    vocabulary: &Vocabulary,
+    vocabulary: &CodebookTrainer,
 ) -> Result<ViewCodebooks> {
     let seen: Vec<Vec<&[f32]>> = contexts
         .iter()

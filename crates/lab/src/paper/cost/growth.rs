@@ -4,9 +4,9 @@ use std::hint::black_box;
 
 use anyhow::{Context, Result};
 use faer::Mat;
-use phalanx_codebook::{Codebook, Voting};
+use phalanx_codebook::{Codebook, Encoder, SoftAssignment};
 use phalanx_hand::Pose;
-use phalanx_multiview::{Concatenation, Vocabulary};
+use phalanx_multiview::{CodebookTrainer, ViewEncoders};
 use phalanx_rvm::{Bandwidth, KernelRidge, Model, Regularisation};
 use phalanx_segmentation::Silhouette;
 use phalanx_shape_context::{BINS, Orientation, ShapeContexts};
@@ -92,7 +92,7 @@ impl Outline {
     }
 }
 
-/// A codebook of shape contexts from all over the data set; what voting costs does not depend on
+/// A codebook of shape contexts from all over the data set; what assignment costs does not depend on
 /// which they are.
 fn codebook(described: &Described, centres: usize) -> Result<Codebook> {
     let every = described.poses.len() / centres;
@@ -106,7 +106,7 @@ type Centres = fn(usize) -> usize;
 /// What is learnt from some of the cameras at a number of centres for each: the codebooks, and the
 /// regressor of the joined descriptors, with one to estimate from.
 struct Learnt {
-    codebooks: Concatenation,
+    codebooks: ViewEncoders,
     model: Model,
     x: Vec<f64>,
 }
@@ -114,7 +114,7 @@ struct Learnt {
 impl Learnt {
     fn from(described: &Described, views: &[usize], centres: usize) -> Result<Self> {
         let split = Split::even(described.poses.len(), 0);
-        let vocabulary = Vocabulary { centres, ..vocabulary(0) };
+        let vocabulary = CodebookTrainer { centres, ..vocabulary(0) };
         let seen = described.seen(views, &split.train);
         let codebooks = vocabulary.fit(&seen, BINS)?;
         let poses: Vec<Pose> = split.train.iter().map(|&i| described.poses[i]).collect();
@@ -137,12 +137,11 @@ fn cameras(lab: &Lab<'_>) -> Result<Group> {
     let mut contexts = ShapeContexts::new();
     let mut scratch = phalanx_codebook::Scratch::default();
     let mut describe = |learnt: &Learnt| {
-        let voting = learnt.codebooks.voting();
         seconds(|| {
-            for ((points, orientation), codebook) in seen.iter().zip(learnt.codebooks.codebooks()) {
-                let mut x = vec![0.0; codebook.len()];
+            for ((points, orientation), encoder) in seen.iter().zip(learnt.codebooks.views()) {
+                let mut x = vec![0.0; encoder.dim()];
                 let values = contexts.compute(black_box(points), *orientation)?.values();
-                codebook.soft_assign(values, voting, &mut scratch, &mut x)?;
+                encoder.encode(values, &mut scratch, &mut x)?;
                 black_box(&x);
             }
             Ok(())
@@ -181,7 +180,12 @@ fn contour_points(described: &Described, outline: &Outline) -> Result<Group> {
         let seen = contexts.compute(&outline.points(count), outline.orientation())?;
         let values = seen.values().to_vec();
         seconds(|| {
-            Ok(codebook.soft_assign(black_box(&values), Voting::default(), &mut scratch, &mut x)?)
+            Ok(codebook.soft_assign(
+                black_box(&values),
+                SoftAssignment::default(),
+                &mut scratch,
+                &mut x,
+            )?)
         })
     };
     let votes = Growth::over("votes", &sizes, vote)?;
@@ -194,7 +198,12 @@ fn centres(described: &Described) -> Result<Group> {
     let vote = |count: usize| {
         let (codebook, mut x) = (codebook(described, count)?, vec![0.0; count]);
         seconds(|| {
-            Ok(codebook.soft_assign(black_box(samples), Voting::default(), &mut scratch, &mut x)?)
+            Ok(codebook.soft_assign(
+                black_box(samples),
+                SoftAssignment::default(),
+                &mut scratch,
+                &mut x,
+            )?)
         })
     };
     let growths = vec![Growth::over("votes", &[30, 60, 120, 240, 360], vote)?];

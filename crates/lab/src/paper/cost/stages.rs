@@ -5,6 +5,7 @@ use std::hint::black_box;
 use anyhow::{Context, Result};
 use image::RgbImage;
 use phalanx::{Describer, OrientationRule, Picture, Segmenter};
+use phalanx_codebook::Encoder;
 use phalanx_hand::Dof;
 use phalanx_render::{Appearance, Renderer};
 use phalanx_rvm::{Model, Scratch};
@@ -131,15 +132,14 @@ fn photographs(lab: &Lab<'_>) -> Result<Vec<RgbImage>> {
 /// Seconds from decoded photographs, of the first cameras, to their histograms.
 fn describe(photographs: &[RgbImage], halves: &Halves) -> Result<f64> {
     let skin = Segmenter::Skin(SkinModel::builtin());
-    let voting = halves.codebooks.voting();
     let (mut describer, mut silhouette) = (Describer::default(), Silhouette::default());
     let mut votes = phalanx_codebook::Scratch::default();
     seconds(|| {
-        for (photograph, codebook) in photographs.iter().zip(halves.codebooks.codebooks()) {
+        for (photograph, encoder) in photographs.iter().zip(halves.codebooks.views()) {
             describer.silhouette(Picture::Photograph(photograph, &skin), &mut silhouette)?;
             let contexts = describer.contexts(&silhouette, OrientationRule::HandAxis)?;
-            let mut x = vec![0.0; codebook.len()];
-            codebook.soft_assign(contexts.values(), voting, &mut votes, &mut x)?;
+            let mut x = vec![0.0; encoder.dim()];
+            encoder.encode(contexts.values(), &mut votes, &mut x)?;
             black_box(&x);
         }
         Ok(())

@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use faer::Mat;
-use phalanx_multiview::{Concatenation, Pooled, Scratch};
+use phalanx_codebook::Encoder;
+use phalanx_multiview::{PooledEncoder, Scratch, ViewEncoders};
 use phalanx_shape_context::BINS;
 use rayon::prelude::*;
 
@@ -11,11 +12,11 @@ use crate::data::described::{Described, vocabulary};
 /// Codebooks learnt from one half of a split.
 pub(super) struct Codebooks {
     /// All centres shared by the views.
-    joined: Concatenation,
+    joined: ViewEncoders,
     /// All centres for one view, for each view.
-    large: Vec<Concatenation>,
+    large: Vec<ViewEncoders>,
     /// All centres for all views together.
-    pooled: Pooled,
+    pooled: PooledEncoder,
 }
 
 /// Descriptors of some samples, K × I each.
@@ -47,13 +48,13 @@ impl Codebooks {
     }
 
     pub(super) fn describe(&self, described: &Described, samples: &[usize]) -> Result<Descriptors> {
-        let all: Vec<usize> = (0..self.joined.views()).collect();
+        let all: Vec<usize> = (0..self.joined.views().len()).collect();
         let seen = described.seen(&all, samples);
         let joined = phalanx::descriptors(&self.joined, &seen)?;
         let mut end = 0;
-        let parts = self.joined.codebooks().iter().map(|codebook| {
+        let parts = self.joined.views().iter().map(|encoder| {
             let begin = end;
-            end += codebook.len();
+            end += encoder.dim();
             joined.get(begin..end, ..).to_owned()
         });
         let parts = parts.collect();

@@ -1,21 +1,20 @@
 //! How the codebooks of the views are learnt.
 
-use phalanx_codebook::{AnyCoding, Codebook, KMeans, Vlad, Voting};
+use phalanx_codebook::{AnyEncoder, Codebook, KMeans, SoftAssignment, Vlad};
 
-use crate::codes::Codes;
-use crate::concatenation::Concatenation;
 use crate::error::{Error, Result};
-use crate::pooled::Pooled;
+use crate::pooled_encoder::PooledEncoder;
+use crate::view_encoders::ViewEncoders;
 
 /// The codebooks to learn: the paper's 90 centres, shared as evenly as they go by the views, so that
 /// descriptors of one view and of three have the same length (§ 2); or all in one codebook, for
 /// [`pool`](Self::pool).
 #[derive(Debug, Clone, PartialEq)]
-pub struct Vocabulary {
+pub struct CodebookTrainer {
     /// Centres of all views together.
     pub centres: usize,
     /// How the shape contexts vote.
-    pub voting: Voting,
+    pub assignment: SoftAssignment,
     /// At most this many shape contexts are clustered for a codebook, evenly spaced over all.
     pub most_samples: usize,
     /// The clustering; its number of centres is replaced by each view's share, and each view
@@ -23,30 +22,30 @@ pub struct Vocabulary {
     pub clustering: KMeans,
 }
 
-impl Default for Vocabulary {
+impl Default for CodebookTrainer {
     fn default() -> Self {
         Self {
             centres: 90,
-            voting: Voting::default(),
+            assignment: SoftAssignment::default(),
             most_samples: 20_000,
             clustering: KMeans::default(),
         }
     }
 }
 
-impl Vocabulary {
+impl CodebookTrainer {
     /// Learns a codebook for each view. `contexts[i][v]` holds the shape contexts of sample i
     /// in view v, `dim` numbers each, one after the other.
     ///
     /// # Errors
     /// No view, views that differ in number between samples, a view that is not a whole number
     /// of shape contexts, or what clustering reports.
-    pub fn fit<S, V>(&self, contexts: &[S], dim: usize) -> Result<Concatenation>
+    pub fn fit<S, V>(&self, contexts: &[S], dim: usize) -> Result<ViewEncoders>
     where
         S: AsRef<[V]>,
         V: AsRef<[f32]>,
     {
-        Concatenation::from_parts(self.codebooks(contexts, dim)?, self.voting)
+        ViewEncoders::soft_histograms(self.codebooks(contexts, dim)?, self.assignment)
     }
 
     /// Learns a codebook for each view, to code shape contexts by their residuals to its centres;
@@ -56,7 +55,7 @@ impl Vocabulary {
     /// As of [`fit`](Self::fit).
     ///
     /// ```
-    /// use phalanx_multiview::Vocabulary;
+    /// use phalanx_multiview::CodebookTrainer;
     ///
     /// // 40 samples of two views, five 3-bin histograms each.
     /// let histogram = |k: usize| {
@@ -66,19 +65,19 @@ impl Vocabulary {
     /// let sample = |i: usize| vec![(i..i + 5).flat_map(histogram).collect::<Vec<f32>>(); 2];
     /// let samples: Vec<_> = (0..40).map(sample).collect();
     ///
-    /// let vocabulary = Vocabulary { centres: 4, ..Vocabulary::default() };
+    /// let vocabulary = CodebookTrainer { centres: 4, ..CodebookTrainer::default() };
     /// let codes = vocabulary.fit_residuals(&samples, 3)?;
     /// assert_eq!(codes.dim(), 4 * 3); // two centres a view, three residuals a centre
     /// # Ok::<(), phalanx_multiview::Error>(())
     /// ```
-    pub fn fit_residuals<S, V>(&self, contexts: &[S], dim: usize) -> Result<Codes>
+    pub fn fit_residuals<S, V>(&self, contexts: &[S], dim: usize) -> Result<ViewEncoders>
     where
         S: AsRef<[V]>,
         V: AsRef<[f32]>,
     {
         let codebooks = self.codebooks(contexts, dim)?;
-        Codes::from_parts(
-            codebooks.into_iter().map(|codebook| AnyCoding::Vlad(Vlad { codebook })).collect(),
+        ViewEncoders::from_parts(
+            codebooks.into_iter().map(|codebook| AnyEncoder::Vlad(Vlad { codebook })).collect(),
         )
     }
 
@@ -109,7 +108,7 @@ impl Vocabulary {
     /// As of [`fit`](Self::fit).
     ///
     /// ```
-    /// use phalanx_multiview::{Scratch, Vocabulary};
+    /// use phalanx_multiview::{Scratch, CodebookTrainer};
     ///
     /// // 40 samples of two views, five 3-bin histograms each.
     /// let histogram = |k: usize| {
@@ -119,13 +118,13 @@ impl Vocabulary {
     /// let sample = |i: usize| vec![(i..i + 5).flat_map(histogram).collect::<Vec<f32>>(); 2];
     /// let samples: Vec<_> = (0..40).map(sample).collect();
     ///
-    /// let pooled = Vocabulary { centres: 6, ..Vocabulary::default() }.pool(&samples, 3)?;
+    /// let pooled = CodebookTrainer { centres: 6, ..CodebookTrainer::default() }.pool(&samples, 3)?;
     /// let mut x = vec![0.0; pooled.dim()];
     /// pooled.describe(&samples[0], &mut Scratch::default(), &mut x)?;
     /// assert!((x.iter().sum::<f64>() - 1.0).abs() < 1e-6);
     /// # Ok::<(), phalanx_multiview::Error>(())
     /// ```
-    pub fn pool<S, V>(&self, contexts: &[S], dim: usize) -> Result<Pooled>
+    pub fn pool<S, V>(&self, contexts: &[S], dim: usize) -> Result<PooledEncoder>
     where
         S: AsRef<[V]>,
         V: AsRef<[f32]>,
@@ -134,7 +133,7 @@ impl Vocabulary {
         let clustering = KMeans { centres: self.centres, ..self.clustering };
         let of_all = contexts.iter().flat_map(AsRef::as_ref).map(AsRef::as_ref);
         let fit = clustering.fit(&evenly_spaced(of_all, dim, self.most_samples), dim);
-        Pooled::from_parts(fit.map_err(Error::Pooled)?.codebook, self.voting)
+        PooledEncoder::from_parts(fit.map_err(Error::Pooled)?.codebook, self.assignment)
     }
 }
 

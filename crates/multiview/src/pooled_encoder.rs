@@ -1,6 +1,6 @@
 //! Low-level fusion: all views' shape contexts in one histogram.
 
-use phalanx_codebook::{Codebook, Voting};
+use phalanx_codebook::{Codebook, SoftAssignment};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
@@ -12,44 +12,44 @@ use crate::scratch::Scratch;
 /// Any number of views can be described: a missing view is one entry fewer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts", into = "Parts")]
-pub struct Pooled {
+pub struct PooledEncoder {
     codebook: Codebook,
-    voting: Voting,
+    assignment: SoftAssignment,
 }
 
-/// The stored form of a [`Pooled`].
+/// The stored form of a [`PooledEncoder`].
 #[derive(Serialize, Deserialize)]
 struct Parts {
     codebook: Codebook,
-    voting: Voting,
+    assignment: SoftAssignment,
 }
 
-impl TryFrom<Parts> for Pooled {
+impl TryFrom<Parts> for PooledEncoder {
     type Error = Error;
 
     fn try_from(parts: Parts) -> Result<Self> {
-        Self::from_parts(parts.codebook, parts.voting)
+        Self::from_parts(parts.codebook, parts.assignment)
     }
 }
 
-impl From<Pooled> for Parts {
-    fn from(pooled: Pooled) -> Self {
-        Self { codebook: pooled.codebook, voting: pooled.voting }
+impl From<PooledEncoder> for Parts {
+    fn from(pooled: PooledEncoder) -> Self {
+        Self { codebook: pooled.codebook, assignment: pooled.assignment }
     }
 }
 
-impl Pooled {
+impl PooledEncoder {
     /// A codebook and how shape contexts vote into it.
     ///
     /// # Errors
     /// A codebook with fewer centres than each shape context votes into.
     ///
     /// ```
-    /// use phalanx_codebook::{Codebook, Voting};
-    /// use phalanx_multiview::{Pooled, Scratch};
+    /// use phalanx_codebook::{Codebook, SoftAssignment};
+    /// use phalanx_multiview::{PooledEncoder, Scratch};
     ///
     /// let codebook = Codebook::from_parts(vec![1.0, 0.0, 0.0, 1.0], 2, 0.1)?;
-    /// let pooled = Pooled::from_parts(codebook, Voting::HARD)?;
+    /// let pooled = PooledEncoder::from_parts(codebook, SoftAssignment::HARD)?;
     /// let mut x = [0.0; 2];
     /// pooled.describe(&[[0.9, 0.1], [0.2, 0.8]], &mut Scratch::default(), &mut x)?;
     /// assert_eq!(x, [0.5, 0.5]);
@@ -57,12 +57,12 @@ impl Pooled {
     /// assert_eq!(x, [1.0, 0.0]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn from_parts(codebook: Codebook, voting: Voting) -> Result<Self> {
-        let (neighbours, centres) = (voting.neighbours, codebook.len());
+    pub fn from_parts(codebook: Codebook, assignment: SoftAssignment) -> Result<Self> {
+        let (neighbours, centres) = (assignment.neighbours, codebook.len());
         if !(1..=centres).contains(&neighbours) {
             return Err(Error::Pooled(phalanx_codebook::Error::Neighbours { neighbours, centres }));
         }
-        Ok(Self { codebook, voting })
+        Ok(Self { codebook, assignment })
     }
 
     /// The codebook.
@@ -71,8 +71,8 @@ impl Pooled {
     }
 
     /// How shape contexts vote.
-    pub fn voting(&self) -> Voting {
-        self.voting
+    pub fn assignment(&self) -> SoftAssignment {
+        self.assignment
     }
 
     /// The length of the histogram.
@@ -103,6 +103,6 @@ impl Pooled {
         for view in contexts {
             pool.extend_from_slice(view.as_ref());
         }
-        self.codebook.soft_assign(pool, self.voting, coding, x).map_err(Error::Pooled)
+        self.codebook.soft_assign(pool, self.assignment, coding, x).map_err(Error::Pooled)
     }
 }
