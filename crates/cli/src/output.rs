@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use anyhow::Result;
 use phalanx::{Estimate, Estimator};
 use phalanx_hand::{Dof, Unit};
-use phalanx_segmentation::{Evidence, Forearm};
+use phalanx_segmentation::{Forearm, ForearmCue};
 use serde::{Serialize, Serializer};
 
 /// The JSON of an estimate: degrees and millimetres.
@@ -67,9 +67,9 @@ pub(crate) fn json(
 ) -> Result<String> {
     let views = views(estimator, estimate).map(|(camera, forearm)| View {
         camera,
-        forearm: match forearm.evidence {
-            Evidence::Border => "border",
-            Evidence::Stump => "stump",
+        forearm: match forearm.cue {
+            ForearmCue::Border => "border",
+            ForearmCue::SmoothEnd => "stump",
         },
         border_crossings: forearm.crossings,
     });
@@ -98,12 +98,12 @@ pub(crate) fn text(estimate: &Estimate) -> String {
 
 /// What should be known of an estimate's views before it is trusted.
 pub(crate) fn doubts(estimator: &Estimator, estimate: &Estimate) -> Vec<String> {
-    let doubt = |(camera, forearm): (&str, &Forearm)| match (forearm.evidence, forearm.crossings) {
-        (Evidence::Stump, _) => Some(format!(
+    let doubt = |(camera, forearm): (&str, &Forearm)| match (forearm.cue, forearm.crossings) {
+        (ForearmCue::SmoothEnd, _) => Some(format!(
             "camera '{camera}': the forearm does not reach the border of the picture; its end was guessed"
         )),
-        (Evidence::Border, 0 | 1) => None,
-        (Evidence::Border, crossings) => Some(format!(
+        (ForearmCue::Border, 0 | 1) => None,
+        (ForearmCue::Border, crossings) => Some(format!(
             "camera '{camera}': the hand crosses the border {crossings} times; the longest crossing is taken for the forearm"
         )),
     };

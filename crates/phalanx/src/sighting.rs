@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use phalanx_camera::{Camera, Ray};
-use phalanx_segmentation::LocatedHand;
+use phalanx_segmentation::HandDetection;
 
 use crate::{Error, Result};
 
@@ -10,7 +10,7 @@ use crate::{Error, Result};
 #[derive(Clone, Copy)]
 pub(crate) struct Sighting<'a> {
     pub(crate) camera: &'a Camera,
-    pub(crate) hand: &'a LocatedHand,
+    pub(crate) hand: &'a HandDetection,
     pub(crate) wrist: Ray,
     /// Normal of the plane through the camera in which the arm lies: the camera sees the hand's end
     /// of it turned about the normal from the wrist.
@@ -20,7 +20,7 @@ pub(crate) struct Sighting<'a> {
 impl<'a> Sighting<'a> {
     /// # Errors
     /// A wrist where the camera's lens maps nothing.
-    pub(crate) fn new(camera: &'a Camera, hand: &'a LocatedHand) -> Result<Self> {
+    pub(crate) fn new(camera: &'a Camera, hand: &'a HandDetection) -> Result<Self> {
         let ray = |pixel: DVec2| {
             let no_window = || Error::NoWindow { camera: camera.name.clone(), pixel };
             camera.unproject(pixel).ok_or_else(no_window)

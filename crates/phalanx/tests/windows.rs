@@ -14,7 +14,7 @@ use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_multiview::CodebookTrainer;
 use phalanx_refine::{PoseFitSettings, PosePrior};
 use phalanx_render::Renderer;
-use phalanx_segmentation::{LocatedHand, Silhouette};
+use phalanx_segmentation::{HandDetection, Silhouette};
 use proptest::prelude::*;
 
 const THROUGH_WINDOWS: ViewConfig =
@@ -336,9 +336,9 @@ fn whole_pictures_have_no_windows() {
 }
 
 /// The hand as it would be located without error.
-fn located(camera: &Camera, wrist: DVec3, arm: DVec3) -> LocatedHand {
+fn located(camera: &Camera, wrist: DVec3, arm: DVec3) -> HandDetection {
     let [at, ahead] = [wrist, wrist + arm].map(|point| camera.project(point).unwrap());
-    LocatedHand {
+    HandDetection {
         wrist: at.to_array(),
         direction: (ahead - at).normalize().to_array(),
         width: 20.0,
@@ -347,7 +347,7 @@ fn located(camera: &Camera, wrist: DVec3, arm: DVec3) -> LocatedHand {
         area: 2000.0,
         arm: 30.0,
         cut_off: false,
-        strangeness: 5.0,
+        mahalanobis2: 5.0,
         component: 0,
     }
 }

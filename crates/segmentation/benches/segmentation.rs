@@ -5,7 +5,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use image::{GrayImage, Rgb, RgbImage};
 use phalanx_segmentation::{
-    Cleanup, Contour, Silhouette, SkinModel, Wall, Workspace, clean_into, downsample,
+    Cleanup, Contour, PlainBackground, Silhouette, SkinModel, Workspace, clean_into, downsample,
 };
 
 /// A hand-like scene: a palm with four fingers and a forearm that leaves below, and speckle.
@@ -39,7 +39,7 @@ fn steps(criterion: &mut Criterion) {
         b.iter(|| model.segment_into(black_box(&small), &mut raw));
     });
     criterion.bench_function("bright wall 120x90", |b| {
-        b.iter(|| Wall::Bright.segment(black_box(&small)));
+        b.iter(|| PlainBackground::Bright.segment(black_box(&small)));
     });
     criterion.bench_function("clean 120x90", |b| {
         b.iter(|| clean_into(black_box(&raw), &cleanup, &mut workspace, &mut cleaned));

@@ -2,8 +2,8 @@
 
 use phalanx_segmentation::{
     BackgroundModel, BackgroundParams, BackgroundParts, Cleanup, Contour, CropWindow, Error,
-    Evidence, Forearm, HandFinder, Label, LocatedHand, Silhouette, SkinModel, SkinParams,
-    SkinParts, SkinTrainer, Wall, Workspace, WristModel, WristTrainer,
+    Forearm, ForearmCue, HandDetection, HandDetector, Label, PlainBackground, Silhouette,
+    SkinModel, SkinParams, SkinParts, SkinTrainer, Workspace, WristModel, WristTrainer,
 };
 
 const fn shared<T: Send + Sync>() {}
@@ -21,17 +21,17 @@ shared!(
     Contour,
     CropWindow,
     Error,
-    Evidence,
+    ForearmCue,
     Forearm,
-    HandFinder,
+    HandDetector,
     Label,
-    LocatedHand,
+    HandDetection,
     Silhouette,
     SkinModel,
     SkinParams,
     SkinParts,
     SkinTrainer,
-    Wall,
+    PlainBackground,
     Workspace,
     WristModel,
     WristTrainer,

@@ -5,7 +5,7 @@ mod property;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use image::{GrayImage, Luma};
-use phalanx_segmentation::{Cleanup, Error, HandFinder, LocatedHand, WristModel, WristTrainer};
+use phalanx_segmentation::{Cleanup, Error, HandDetection, HandDetector, WristModel, WristTrainer};
 use proptest::prelude::*;
 
 /// An open hand of 180 units and a forearm of another 250, cut off or bent; positions in units are
@@ -56,7 +56,7 @@ impl Drawn {
     }
 
     /// The likeliest hand in its picture, checked against the truth.
-    fn check(&self, mask: &GrayImage) -> LocatedHand {
+    fn check(&self, mask: &GrayImage) -> HandDetection {
         let hand = find(mask)[0];
         let [dx, dy] = [hand.wrist[0] - self.wrist[0], hand.wrist[1] - self.wrist[1]];
         let length = 180.0 * self.scale;
@@ -69,8 +69,8 @@ impl Drawn {
     }
 }
 
-fn find(mask: &GrayImage) -> Vec<LocatedHand> {
-    HandFinder::default().find(mask, &Cleanup::default(), WristModel::builtin()).unwrap()
+fn find(mask: &GrayImage) -> Vec<HandDetection> {
+    HandDetector::default().find(mask, &Cleanup::default(), WristModel::builtin()).unwrap()
 }
 
 #[test]
@@ -102,22 +102,22 @@ fn other_things_in_the_picture_are_no_hands() {
         }
     }
     UPRIGHT.check(&mask);
-    let mut finder = HandFinder::default();
-    let hand = finder.find(&mask, &Cleanup::default(), WristModel::builtin()).unwrap()[0];
-    assert_eq!(finder.isolate(&hand), finder_mask(&UPRIGHT.mask(240, 160)));
+    let mut detector = HandDetector::default();
+    let hand = detector.find(&mask, &Cleanup::default(), WristModel::builtin()).unwrap()[0];
+    assert_eq!(detector.isolate(&hand), detector_mask(&UPRIGHT.mask(240, 160)));
 }
 
-/// A mask as the finder cleans it.
-fn finder_mask(mask: &GrayImage) -> GrayImage {
-    let mut finder = HandFinder::default();
-    let hand = finder.find(mask, &Cleanup::default(), WristModel::builtin()).unwrap()[0];
-    finder.isolate(&hand)
+/// A mask as the detector cleans it.
+fn detector_mask(mask: &GrayImage) -> GrayImage {
+    let mut detector = HandDetector::default();
+    let hand = detector.find(mask, &Cleanup::default(), WristModel::builtin()).unwrap()[0];
+    detector.isolate(&hand)
 }
 
 #[test]
 fn nothing_to_find_is_an_error() {
     let find = |mask: &GrayImage| {
-        HandFinder::default().find(mask, &Cleanup::default(), WristModel::builtin())
+        HandDetector::default().find(mask, &Cleanup::default(), WristModel::builtin())
     };
     assert!(matches!(find(&GrayImage::new(0, 5)), Err(Error::ImageTooSmall { .. })));
     assert!(matches!(find(&GrayImage::new(50, 50)), Err(Error::EmptyMask { .. })));
@@ -176,7 +176,7 @@ proptest! {
         let [here, there] = drawn.map(|drawn| find(&drawn.mask(160, 160))[0]);
         let back = [0, 1].map(|k| there.wrist[k] - shift[k]);
         prop_assert!((back[0] - here.wrist[0]).hypot(back[1] - here.wrist[1]) < 1e-9);
-        prop_assert_eq!((here.area, here.strangeness), (there.area, there.strangeness));
+        prop_assert_eq!((here.area, here.mahalanobis2), (there.area, there.mahalanobis2));
     }
 
     #[test]
@@ -189,8 +189,8 @@ proptest! {
             let noise = cell.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
             Luma([if noise % 100 < density { 255 } else { 0 }])
         });
-        let mut finder = HandFinder::default();
-        let Ok(hands) = finder.find(&mask, &Cleanup::default(), WristModel::builtin()) else {
+        let mut detector = HandDetector::default();
+        let Ok(hands) = detector.find(&mask, &Cleanup::default(), WristModel::builtin()) else {
             return Ok(());
         };
         for hand in hands {
@@ -199,8 +199,8 @@ proptest! {
             prop_assert!(hand.wrist[0] >= 0.0 && hand.wrist[0] <= f64::from(width));
             prop_assert!(hand.wrist[1] >= 0.0 && hand.wrist[1] <= f64::from(height));
             prop_assert!(hand.area >= 1.0 && hand.length > 0.0 && hand.arm >= 0.0);
-            prop_assert!(hand.across[0] < hand.across[1] && hand.strangeness.is_finite());
-            let isolated = finder.isolate(&hand).iter().filter(|&&level| level > 127).count();
+            prop_assert!(hand.across[0] < hand.across[1] && hand.mahalanobis2.is_finite());
+            let isolated = detector.isolate(&hand).iter().filter(|&&level| level > 127).count();
             prop_assert!(isolated as f64 >= hand.area);
         }
     }

@@ -6,7 +6,7 @@ mod property;
 
 use common::{masks, placed};
 use image::{GrayImage, Luma};
-use phalanx_segmentation::{Contour, Error, Evidence, Silhouette, Workspace};
+use phalanx_segmentation::{Contour, Error, ForearmCue, Silhouette, Workspace};
 use proptest::prelude::*;
 
 fn painted(width: u32, height: u32, hand: impl Fn(i32, i32) -> bool) -> GrayImage {
@@ -34,8 +34,8 @@ proptest! {
                 let [x, y] = forearm.end;
                 prop_assert!((0.5..f64::from(mask.width())).contains(&x));
                 prop_assert!((0.5..f64::from(mask.height())).contains(&y));
-                prop_assert_eq!(forearm.evidence == Evidence::Stump, contour.is_closed());
-                prop_assert_eq!(forearm.evidence == Evidence::Stump, forearm.crossings == 0);
+                prop_assert_eq!(forearm.cue == ForearmCue::SmoothEnd, contour.is_closed());
+                prop_assert_eq!(forearm.cue == ForearmCue::SmoothEnd, forearm.crossings == 0);
                 prop_assert_eq!(Contour::trace(&mask), contour);
             }
             Err(Error::EmptyMask { pixels: 0, .. }) => {
@@ -60,7 +60,7 @@ proptest! {
     fn a_stump_is_found_wherever_the_hand_lies(x in 0..20_u32, y in 0..9_u32) {
         let canvas = placed(&toy_hand(60, 80, 75), (90, 95), (x + 2, y + 2));
         let forearm = Silhouette::from_mask(&canvas).unwrap().forearm;
-        prop_assert_eq!(forearm.evidence, Evidence::Stump);
+        prop_assert_eq!(forearm.cue, ForearmCue::SmoothEnd);
         prop_assert!((forearm.end[0] - f64::from(x) - 36.0).abs() < 1.0);
         prop_assert!((f64::from(y) + 77.0 - forearm.end[1]).abs() < 4.0);
         // Either side of the end, a forearm's width of 12 pixels apart.
@@ -76,8 +76,8 @@ proptest! {
 fn the_forearm_ends_in_the_middle_of_the_longest_crossing() {
     let forearm = Silhouette::from_mask(&toy_hand(60, 70, 90)).unwrap().forearm;
     assert_eq!(
-        (forearm.end, forearm.evidence, forearm.crossings),
-        ([34.0, 69.5], Evidence::Border, 1)
+        (forearm.end, forearm.cue, forearm.crossings),
+        ([34.0, 69.5], ForearmCue::Border, 1)
     );
     assert_eq!(forearm.sides, [[39.5, 69.5], [28.5, 69.5]]);
 
@@ -104,7 +104,7 @@ fn of_two_smooth_ends_the_narrower_is_the_forearm() {
             || (23..37).contains(&x) && (20..70).contains(&y)
     });
     let forearm = Silhouette::from_mask(&fist).unwrap().forearm;
-    assert_eq!(forearm.evidence, Evidence::Stump);
+    assert_eq!(forearm.cue, ForearmCue::SmoothEnd);
     assert!(forearm.end[1] > 65.0);
 }
 

@@ -1,7 +1,9 @@
 //! Masks without a skin model.
 
 use image::{GrayImage, Luma, Rgb, RgbImage};
-use phalanx_segmentation::{BackgroundModel, BackgroundParams, BackgroundParts, Error, Wall};
+use phalanx_segmentation::{
+    BackgroundModel, BackgroundParams, BackgroundParts, Error, PlainBackground,
+};
 
 const SIZE: (u32, u32) = (48, 36);
 
@@ -27,19 +29,19 @@ fn a_bright_wall_may_be_tinted_and_unevenly_lit() {
     let fading = |x| 1.0 - 0.5 * x as f32 / SIZE.0 as f32;
     for hand in [[214, 160, 130], [110, 70, 52]] {
         let image = scene([200, 205, 220], Some(hand), fading, 0);
-        assert_eq!(Wall::Bright.segment(&image).unwrap(), truth());
+        assert_eq!(PlainBackground::Bright.segment(&image).unwrap(), truth());
     }
 }
 
 #[test]
 fn before_a_dark_wall_the_hand_is_what_is_bright() {
     let image = scene([18, 20, 25], Some([190, 140, 115]), |_| 1.0, 0);
-    assert_eq!(Wall::Dark.segment(&image).unwrap(), truth());
+    assert_eq!(PlainBackground::Dark.segment(&image).unwrap(), truth());
 }
 
 #[test]
 fn a_bare_wall_is_an_error() {
-    for wall in [Wall::Bright, Wall::Dark] {
+    for wall in [PlainBackground::Bright, PlainBackground::Dark] {
         let bare = scene([200, 200, 200], None, |_| 1.0, 0);
         assert!(matches!(wall.segment(&bare), Err(Error::NoContrast { .. })));
         assert!(matches!(wall.segment(&RgbImage::new(0, 4)), Err(Error::ImageTooSmall { .. })));

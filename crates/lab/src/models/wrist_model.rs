@@ -11,7 +11,7 @@ use phalanx::ItemRng;
 use phalanx_camera::{Camera, Intrinsics};
 use phalanx_hand::{Dof, HandShape, coupled_pose};
 use phalanx_render::Renderer;
-use phalanx_segmentation::{Cleanup, HandFinder, WristModel, WristTrainer};
+use phalanx_segmentation::{Cleanup, HandDetector, WristModel, WristTrainer};
 
 use crate::files;
 
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
 
 /// How far off the wrists and directions are that the model finds on other hands.
 fn test(hand: &HandShape, model: &WristModel) -> Result<String> {
-    let mut finder = HandFinder::default();
+    let mut finder = HandDetector::default();
     let (mut offs, mut angles, mut strange) = (Vec::new(), Vec::new(), Vec::new());
     for number in SAMPLES..2 * SAMPLES {
         let Some(sample) = sample(hand, number)? else { continue };
@@ -67,7 +67,7 @@ fn test(hand: &HandShape, model: &WristModel) -> Result<String> {
         offs.push(sample.wrist.distance(DVec2::from_array(found.wrist)) / sample.length);
         let direction = DVec2::from_array(found.direction);
         angles.push(sample.direction.angle_to(direction).abs().to_degrees());
-        strange.push(found.strangeness);
+        strange.push(found.mahalanobis2);
     }
     let line = |what: &str, values: &mut Vec<f64>| {
         values.sort_by(f64::total_cmp);

@@ -10,7 +10,7 @@ use phalanx::{
 use phalanx_camera::{Rig, Volume};
 use phalanx_hand::HandShape;
 use phalanx_refine::{NuisanceParameters, PoseFit, PoseFitSettings};
-use phalanx_segmentation::{Evidence, SkinModel};
+use phalanx_segmentation::{ForearmCue, SkinModel};
 
 use super::deviation::PoseCovariance;
 use super::method::{Found, Method, Outcome, Sequence, each_frame};
@@ -84,10 +84,10 @@ impl Product {
 
 /// What `phalanx estimate` says of forearms.
 fn forearm_doubts(estimate: &Estimate) -> Vec<String> {
-    let doubt = |forearm: &phalanx_segmentation::Forearm| match forearm.evidence {
-        Evidence::Stump => Some("a forearm's end was guessed".to_owned()),
-        Evidence::Border if forearm.crossings > 1 => Some("more than one forearm".to_owned()),
-        Evidence::Border => None,
+    let doubt = |forearm: &phalanx_segmentation::Forearm| match forearm.cue {
+        ForearmCue::SmoothEnd => Some("a forearm's end was guessed".to_owned()),
+        ForearmCue::Border if forearm.crossings > 1 => Some("more than one forearm".to_owned()),
+        ForearmCue::Border => None,
     };
     let views = estimate.observation.views.iter();
     views.filter_map(|view| doubt(&view.silhouette.forearm)).collect()

@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec3};
 use image::GrayImage;
 use phalanx_camera::Camera;
 use phalanx_hand::{HandShape, Pose};
-use phalanx_segmentation::{HandFinder, LocatedHand};
+use phalanx_segmentation::{HandDetection, HandDetector};
 
 use crate::localize::{Arm, Ball, Detections, HandCrop, Placement, associate};
 use crate::{Error, Result};
@@ -54,7 +54,7 @@ pub(super) struct Sight {
 
 /// One camera's part of a frame.
 struct View {
-    finder: HandFinder,
+    finder: HandDetector,
     is_empty: bool,
 }
 
@@ -70,7 +70,7 @@ impl Sight {
         }
         let (mut views, mut detections) = (Vec::new(), Vec::new());
         for (camera, mask) in cameras.iter().zip(masks) {
-            let mut finder = HandFinder::default();
+            let mut finder = HandDetector::default();
             let found = match mask {
                 Some(mask) => Detections::find(camera, mask, &mut finder),
                 None => Detections::none(camera),
@@ -96,13 +96,13 @@ impl View {
         if self.is_empty {
             return None;
         }
-        let mut parts: Vec<&LocatedHand> = Vec::new();
+        let mut parts: Vec<&HandDetection> = Vec::new();
         for hand in &detections.hands {
             if parts.iter().all(|part| part.component != hand.component) {
                 parts.push(hand);
             }
         }
-        let crop = |part: &LocatedHand| -> Option<(u32, bool, HandCrop)> {
+        let crop = |part: &HandDetection| -> Option<(u32, bool, HandCrop)> {
             let mask = self.finder.isolate(part);
             let crop = HandCrop::onto(&detections.camera, &mask, ball).ok()?;
             Some((crop.filled(), crop.holds_most_of(&mask), crop))

@@ -1,7 +1,7 @@
 //! What a camera gives.
 
 use image::{DynamicImage, GrayImage, RgbImage};
-use phalanx_segmentation::{BackgroundModel, SkinModel, Wall};
+use phalanx_segmentation::{BackgroundModel, PlainBackground, SkinModel};
 
 use crate::error::Result;
 
@@ -90,7 +90,7 @@ pub enum Segmenter {
     /// working size, or the picture's where windows are described.
     Background(BackgroundModel),
     /// By its difference from a plain wall.
-    Wall(Wall),
+    PlainBackground(PlainBackground),
 }
 
 impl Segmenter {
@@ -102,7 +102,7 @@ impl Segmenter {
         match self {
             Self::Skin(model) => Ok(model.segment(image)),
             Self::Background(model) => model.segment(image),
-            Self::Wall(wall) => wall.segment(image),
+            Self::PlainBackground(wall) => wall.segment(image),
         }
     }
 }

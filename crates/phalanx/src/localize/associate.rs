@@ -86,7 +86,7 @@ pub fn associate(views: &[Detections], most: usize) -> Vec<Placement> {
 
 /// What may be the hand, and what it says of where that is.
 struct Candidate<'a> {
-    strangeness: f64,
+    mahalanobis2: f64,
     sighting: Sighting<'a>,
 }
 
@@ -101,7 +101,7 @@ impl<'a> Seen<'a> {
         let candidate = |hand| {
             // Where the lens maps nothing there is no hand either.
             let sighting = Sighting::new(&view.camera, hand).ok()?;
-            Some(Candidate { strangeness: hand.strangeness, sighting })
+            Some(Candidate { mahalanobis2: hand.mahalanobis2, sighting })
         };
         Self { view, candidates: view.hands.iter().filter_map(candidate).collect() }
     }
@@ -191,13 +191,13 @@ fn judged(wrist: DVec3, arm: DVec3, seen: &[Seen<'_>]) -> Placement {
 
 /// How little a candidate is the hand with its wrist at a point and its arm in a direction.
 fn cost(candidate: &Candidate<'_>, wrist: DVec3, arm: DVec3) -> f64 {
-    let Candidate { strangeness, sighting } = candidate;
+    let Candidate { mahalanobis2, sighting } = candidate;
     let width = sighting.width_mm(wrist);
     if width <= 0.0 {
         return f64::INFINITY;
     }
     let offset = (wrist - sighting.wrist.origin).cross(sighting.wrist.direction).length();
-    strangeness
+    mahalanobis2
         + (offset / MISS).powi(2)
         + ((width / WIDTH).ln() / WIDTH_SPREAD).powi(2)
         + (sighting.miss(arm) / TURN).powi(2)

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use image::GrayImage;
 use phalanx_camera::Camera;
-use phalanx_segmentation::{Cleanup, HandFinder, LocatedHand, WristModel};
+use phalanx_segmentation::{Cleanup, HandDetection, HandDetector, WristModel};
 
 /// What may be a hand in one picture. All pixels are those of `camera`, which is the camera resized to
 /// the picture, so that they cannot be taken for those of a picture of another size.
@@ -12,7 +12,7 @@ pub struct Detections {
     /// The camera, its image as large as the picture that was looked at.
     pub camera: Camera,
     /// The candidates, the likeliest first; none where nothing is as large as a hand.
-    pub hands: Vec<LocatedHand>,
+    pub hands: Vec<HandDetection>,
     /// The picture's mask: hand is over 127.
     mask: GrayImage,
 }
@@ -23,14 +23,14 @@ const MOST: usize = 6;
 
 impl Detections {
     /// Looks for hands in a camera's mask of any size.
-    pub fn find(camera: &Camera, mask: &GrayImage, finder: &mut HandFinder) -> Self {
+    pub fn find(camera: &Camera, mask: &GrayImage, finder: &mut HandDetector) -> Self {
         let (width, height) = mask.dimensions();
         let camera = camera.with_intrinsics(camera.intrinsics.resized(width, height));
         // What is no hand is an answer here, not an error: other views may see one.
         let found = finder.find(mask, &Cleanup::default(), WristModel::builtin());
         let mut hands = found.unwrap_or_default();
         // Other views can tell which end of an arm is which, so that any end counts alike here.
-        hands.sort_by(|a, b| a.strangeness.total_cmp(&b.strangeness));
+        hands.sort_by(|a, b| a.mahalanobis2.total_cmp(&b.mahalanobis2));
         hands.truncate(MOST);
         Self { camera, hands, mask: mask.clone() }
     }

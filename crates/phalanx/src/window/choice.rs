@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use phalanx_camera::{Camera, Ray, triangulate};
-use phalanx_segmentation::LocatedHand;
+use phalanx_segmentation::HandDetection;
 
 use crate::sighting::{Sighting, arm};
 
@@ -23,14 +23,14 @@ const WIDTH_SPREAD: f64 = 0.25;
 /// its length.
 const TURN: f64 = 0.1;
 
-/// The hand in each view, among what may be one, the likeliest first: strangeness, the rays' misses,
+/// The hand in each view, among what may be one, the likeliest first: Mahalanobis distances, the rays' misses,
 /// how wide the wrist would be, where else the arm would point to, and the way from the last frame's
 /// wrist are each a squared distance in standard deviations, and their sum is the least. Every view
 /// has at least one.
 pub(super) fn choose(
-    looks: &[(Camera, Vec<LocatedHand>)],
+    looks: &[(Camera, Vec<HandDetection>)],
     last: Option<DVec3>,
-) -> Vec<LocatedHand> {
+) -> Vec<HandDetection> {
     let views: Vec<Vec<Candidate<'_>>> = looks.iter().map(candidates).collect();
     let mut choice = vec![0; looks.len()];
     let mut best = (f64::INFINITY, choice.clone());
@@ -51,22 +51,22 @@ pub(super) fn choose(
 
 /// What may be a hand, and what it says of where that is unless the lens has no place for it.
 struct Candidate<'a> {
-    strangeness: f64,
+    mahalanobis2: f64,
     sighting: Option<Sighting<'a>>,
 }
 
-fn candidates((camera, hands): &(Camera, Vec<LocatedHand>)) -> Vec<Candidate<'_>> {
+fn candidates((camera, hands): &(Camera, Vec<HandDetection>)) -> Vec<Candidate<'_>> {
     let likeliest = hands.iter().take(MOST);
     likeliest
         .map(|hand| Candidate {
-            strangeness: hand.strangeness,
+            mahalanobis2: hand.mahalanobis2,
             sighting: Sighting::new(camera, hand).ok(),
         })
         .collect()
 }
 
 fn cost(chosen: &[&Candidate<'_>], last: Option<DVec3>) -> f64 {
-    let strangeness: f64 = chosen.iter().map(|candidate| candidate.strangeness).sum();
+    let mahalanobis2: f64 = chosen.iter().map(|candidate| candidate.mahalanobis2).sum();
     let sightings: Vec<Sighting<'_>> =
         chosen.iter().filter_map(|candidate| candidate.sighting).collect();
     let rays: Vec<Ray> = sightings.iter().map(|sighting| sighting.wrist).collect();
@@ -78,7 +78,7 @@ fn cost(chosen: &[&Candidate<'_>], last: Option<DVec3>) -> f64 {
         Some(met) => met.point.distance_squared(last),
         None => rays.iter().map(|ray| distance_squared(ray, last)).fold(0.0, f64::max),
     });
-    strangeness + apart + moved / (MOTION * MOTION)
+    mahalanobis2 + apart + moved / (MOTION * MOTION)
 }
 
 /// How little what views see is one arm with its wrist at a point.
@@ -110,12 +110,12 @@ mod tests {
         wrist: DVec3,
         arm: DVec3,
         width: f64,
-        strangeness: f64,
-    ) -> LocatedHand {
+        mahalanobis2: f64,
+    ) -> HandDetection {
         let [at, ahead] = [wrist, wrist + arm].map(|point| camera.project(point).unwrap());
         let depth = camera.extrinsics.to_camera(wrist).z;
         let width = width * camera.intrinsics.fx / depth;
-        LocatedHand {
+        HandDetection {
             wrist: at.to_array(),
             direction: DVec2::normalize(ahead - at).to_array(),
             width,
@@ -124,14 +124,14 @@ mod tests {
             area: 4.0 * width * width,
             arm: 2.0 * width,
             cut_off: false,
-            strangeness,
+            mahalanobis2,
             component: 0,
         }
     }
 
     /// In every view a hand and, looking more like one, something else; all views should choose the
     /// hand.
-    fn assert_chosen(hand: [DVec3; 2], other: impl Fn(usize, &Camera) -> LocatedHand) {
+    fn assert_chosen(hand: [DVec3; 2], other: impl Fn(usize, &Camera) -> HandDetection) {
         let rig = Rig::from_toml(include_str!("../../fixtures/desk.toml")).unwrap();
         let [wrist, arm] = hand;
         let look = |(view, camera): (usize, Camera)| {
@@ -141,7 +141,7 @@ mod tests {
         };
         for views in [vec![0, 1], vec![0, 1, 2]] {
             let cameras = views.iter().map(|&view| rig.cameras[view].clone());
-            let looks: Vec<(Camera, Vec<LocatedHand>)> = cameras.enumerate().map(look).collect();
+            let looks: Vec<(Camera, Vec<HandDetection>)> = cameras.enumerate().map(look).collect();
             for (chosen, (camera, _)) in choose(&looks, None).iter().zip(&looks) {
                 assert_eq!(chosen, &located(camera, wrist, arm, WIDTH, 11.0), "{}", camera.name);
             }

@@ -11,10 +11,10 @@ use super::{Window, WindowFinder, resample};
 use crate::synthesis::augmentation::make_ragged;
 use crate::{Describer, Error, Result, WORKING_SIZE};
 
-/// The longest side of a picture in which hands are found, px: a [`HandFinder`] looks at no more than
+/// The longest side of a picture in which hands are found, px: a [`HandDetector`] looks at no more than
 /// 200 cells along a hand and its arm.
 ///
-/// [`HandFinder`]: phalanx_segmentation::HandFinder
+/// [`HandDetector`]: phalanx_segmentation::HandDetector
 const FINDING: u32 = 320;
 
 /// The most of a picture's pixels along a side of a window's pixel: what is ragged in finer ones no

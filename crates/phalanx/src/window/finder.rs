@@ -3,7 +3,7 @@
 use glam::DVec3;
 use image::GrayImage;
 use phalanx_camera::Camera;
-use phalanx_segmentation::{Cleanup, HandFinder, Silhouette, WristModel};
+use phalanx_segmentation::{Cleanup, HandDetector, Silhouette, WristModel};
 
 use super::{Window, choice};
 use crate::{Describer, Error, Result};
@@ -11,7 +11,7 @@ use crate::{Describer, Error, Result};
 /// Finds the hand in all cameras' masks, one scene after another in the same memory.
 #[derive(Debug, Clone, Default)]
 pub struct WindowFinder {
-    finders: Vec<HandFinder>,
+    finders: Vec<HandDetector>,
     describer: Describer,
     seen: GrayImage,
 }
@@ -30,7 +30,7 @@ impl WindowFinder {
         masks: &[GrayImage],
         last: Option<DVec3>,
     ) -> Result<Vec<Window>> {
-        self.finders.resize_with(cameras.len(), HandFinder::default);
+        self.finders.resize_with(cameras.len(), HandDetector::default);
         let mut looks = Vec::with_capacity(cameras.len());
         for ((camera, mask), finder) in cameras.iter().zip(masks).zip(&mut self.finders) {
             let found = finder.find(mask, &Cleanup::default(), WristModel::builtin());

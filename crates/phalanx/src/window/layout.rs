@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use phalanx_camera::{Camera, Intrinsics};
-use phalanx_segmentation::LocatedHand;
+use phalanx_segmentation::HandDetection;
 
 use crate::{Error, Result, WORKING_SIZE};
 
@@ -16,7 +16,7 @@ const MARGIN: f64 = 6.0;
 const LEAST_ARM: f64 = 20.0;
 
 /// The virtual camera that looks at a hand.
-pub(super) fn camera(camera: &Camera, hand: &LocatedHand) -> Result<Camera> {
+pub(super) fn camera(camera: &Camera, hand: &HandDetection) -> Result<Camera> {
     let view = View { camera, hand };
     let (width, height) = (f64::from(WORKING_SIZE.0), f64::from(WORKING_SIZE.1));
     let [along, across] = view.angles_per_pixel()?;
@@ -41,7 +41,7 @@ pub(super) fn camera(camera: &Camera, hand: &LocatedHand) -> Result<Camera> {
 /// A hand as a camera sees it.
 struct View<'a> {
     camera: &'a Camera,
-    hand: &'a LocatedHand,
+    hand: &'a HandDetection,
 }
 
 impl View<'_> {

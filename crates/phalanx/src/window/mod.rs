@@ -10,7 +10,7 @@ use glam::DVec2;
 use image::GrayImage;
 use phalanx_camera::{Camera, PixelMap};
 use phalanx_refine::SilhouetteObservation;
-use phalanx_segmentation::{LocatedHand, Silhouette};
+use phalanx_segmentation::{HandDetection, Silhouette};
 use serde::{Deserialize, Serialize};
 
 use crate::{Result, WORKING_SIZE};
@@ -37,7 +37,7 @@ pub struct Window {
     /// The virtual camera, at the real one's place.
     pub camera: Camera,
     /// The hand in the real camera's picture, px.
-    pub hand: LocatedHand,
+    pub hand: HandDetection,
     /// From the window's pixels to the picture's.
     to_picture: PixelMap,
     /// The real camera, with pixels as the picture has them.
@@ -51,7 +51,7 @@ pub struct PicturedHand {
     /// The camera, with pixels as the picture has them.
     pub camera: Camera,
     /// The hand, px.
-    pub hand: LocatedHand,
+    pub hand: HandDetection,
 }
 
 impl Window {
@@ -59,7 +59,7 @@ impl Window {
     ///
     /// # Errors
     /// A hand so near the picture's border that the lens has no place for its window.
-    pub fn onto(camera: &Camera, hand: &LocatedHand) -> Result<Self> {
+    pub fn onto(camera: &Camera, hand: &HandDetection) -> Result<Self> {
         let virtual_camera = layout::camera(camera, hand)?;
         let to_picture = PixelMap::between(&virtual_camera, camera);
         Ok(Self { camera: virtual_camera, hand: *hand, to_picture, pictured: camera.clone() })

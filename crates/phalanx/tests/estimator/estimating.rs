@@ -2,7 +2,7 @@
 
 use phalanx::{Picture, Workspace};
 use phalanx_hand::{Dof, Pose};
-use phalanx_segmentation::Evidence;
+use phalanx_segmentation::ForearmCue;
 
 use crate::desk::{
     ESTIMATOR, FROM_TOP, closing, difference_deg, estimate, masks, mean, poses, rig, top, unseen,
@@ -77,7 +77,7 @@ fn joints_and_forearms_belong_to_the_pose_and_the_pictures() {
     }
     assert_eq!(found.observation.views.len(), 3);
     for forearm in found.observation.forearms() {
-        assert_eq!((forearm.evidence, forearm.crossings), (Evidence::Border, 1));
+        assert_eq!((forearm.cue, forearm.crossings), (ForearmCue::Border, 1));
         assert!(forearm.end[0] < 1.0, "the forearm enters on the left");
     }
 }

@@ -5,7 +5,9 @@ use phalanx::{Estimate, Picture, Segmenter, Workspace};
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 use phalanx_render::{Appearance, Background, Renderer};
-use phalanx_segmentation::{BackgroundModel, BackgroundParams, SkinModel, Wall, downsample};
+use phalanx_segmentation::{
+    BackgroundModel, BackgroundParams, PlainBackground, SkinModel, downsample,
+};
 
 use crate::desk::{ESTIMATOR, difference_deg, estimate, masks, mean, resized, rig, unseen};
 
@@ -67,7 +69,7 @@ fn the_hand_stands_out_from_a_wall_or_a_recorded_background() {
             Segmenter::Background(BackgroundModel::from_frames(&frames, params).unwrap())
         })
         .collect();
-    let wall = [Segmenter::Wall(Wall::Dark)];
+    let wall = [Segmenter::PlainBackground(PlainBackground::Dark)];
     for segmenters in [recorded.as_slice(), &wall] {
         let change = |pose| {
             let taken = photographs(&rig(), &pose, &appearance, 9);

@@ -5,7 +5,7 @@ use phalanx::{Descriptor, Error, Estimator, ExtraFeatures, Picture, Segmenter, W
 use phalanx_codebook::{AnyEncoder, Codebook, SoftAssignment};
 use phalanx_multiview::ViewEncoders;
 use phalanx_rvm::Model;
-use phalanx_segmentation::{Error as Segmentation, Evidence, MIN_SIDE, SkinModel};
+use phalanx_segmentation::{Error as Segmentation, ForearmCue, MIN_SIDE, SkinModel};
 
 use crate::desk::{ESTIMATOR, FROM_TOP, difference_deg, estimate, masks, rig, top, unseen};
 
@@ -108,7 +108,7 @@ fn a_hand_cut_off_from_the_border_is_known_by_its_stump() {
     }
     let found = estimate(&FROM_TOP, &[mask]).unwrap();
     let forearm = found.observation.views[0].silhouette.forearm;
-    assert_eq!((forearm.evidence, forearm.crossings), (Evidence::Stump, 0));
+    assert_eq!((forearm.cue, forearm.crossings), (ForearmCue::SmoothEnd, 0));
     let error = difference_deg(&found.pose, &pose);
     assert!(error < 6.0, "{error:.2} degrees");
 }

@@ -15,7 +15,7 @@ const BEHIND: [f64; 3] = [0.25, 0.5, 1.0];
 /// How many numbers describe a section.
 pub(crate) const FEATURES: usize = AHEAD.len() + BEHIND.len() + 2;
 
-/// Sections narrower than this have no shape, cells.
+/// CrossSections narrower than this have no shape, cells.
 const NARROWEST: f64 = 4.0;
 
 /// A width of nothing, in units of the section's own, as its logarithm must be finite.
@@ -23,7 +23,7 @@ const NOTHING: f64 = 0.1;
 
 /// The sections of one component, one cell of distance each, from the arm's end to the furthest tip.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Sections {
+pub(crate) struct CrossSections {
     /// Smoothed, cells.
     widths: Vec<f64>,
     /// Cells from this section on.
@@ -34,7 +34,7 @@ pub(crate) struct Sections {
     pub(crate) at_border: Vec<bool>,
 }
 
-impl Sections {
+impl CrossSections {
     /// The sections of what has been measured.
     pub(crate) fn fill(&mut self, grid: &Grid, distances: &Geodesic) {
         let mut counts: Vec<f64> = Vec::new();

@@ -2,7 +2,7 @@
 
 use image::GrayImage;
 
-use crate::detect::cross_sections::Sections;
+use crate::detect::cross_sections::CrossSections;
 use crate::detect::geodesic::Geodesic;
 use crate::detect::grid::Grid;
 use crate::detect::wrist_model::WristModel;
@@ -13,7 +13,7 @@ use crate::mask::majority::Majority;
 
 /// What may be a hand in a mask: a component, and where its wrist would be. All in pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LocatedHand {
+pub struct HandDetection {
     /// The middle of the wrist.
     pub wrist: [f64; 2],
     /// Unit vector along the arm, towards the hand.
@@ -33,8 +33,8 @@ pub struct LocatedHand {
     pub cut_off: bool,
     /// How little it looks like a hand: the squared Mahalanobis distance of its sections from those
     /// of hands, about 11 for one.
-    pub strangeness: f64,
-    /// Which component of the mask it is, for [`HandFinder::isolate`].
+    pub mahalanobis2: f64,
+    /// Which component of the mask it is, for [`HandDetector::isolate`].
     pub component: usize,
 }
 
@@ -53,21 +53,21 @@ const LIKELY_ENDS: usize = 2;
 struct Candidate {
     section: usize,
     evidence: f64,
-    strangeness: f64,
+    mahalanobis2: f64,
 }
 
 /// Finds hands in masks, one after another in the same memory.
 #[derive(Debug, Clone, Default)]
-pub struct HandFinder {
+pub struct HandDetector {
     majority: Majority,
     cleaned: GrayImage,
     components: Components,
     grid: Grid,
     geodesic: Geodesic,
-    sections: Sections,
+    sections: CrossSections,
 }
 
-impl HandFinder {
+impl HandDetector {
     /// Everything in a mask of any size that may be a hand, the likeliest first: each component of
     /// at least [`Cleanup::min_hand`], with its arm coming from each place where it crosses the image
     /// border or, where it crosses none, from each of its ends, and with its wrist at each of the
@@ -79,7 +79,7 @@ impl HandFinder {
     ///
     /// ```
     /// use image::{GrayImage, Luma};
-    /// use phalanx_segmentation::{Cleanup, HandFinder, WristModel};
+    /// use phalanx_segmentation::{Cleanup, HandDetector, WristModel};
     ///
     /// // A palm on an arm that comes from below.
     /// let mask = GrayImage::from_fn(160, 120, |x, y| {
@@ -87,10 +87,10 @@ impl HandFinder {
     ///     let palm = (dx / 22.0).powi(2) + (dy / 30.0).powi(2) < 1.0;
     ///     Luma([if palm || (dx.abs() < 12.0 && dy > 0.0) { 255 } else { 0 }])
     /// });
-    /// let mut finder = HandFinder::default();
-    /// let hands = finder.find(&mask, &Cleanup::default(), WristModel::builtin())?;
+    /// let mut detector = HandDetector::default();
+    /// let hands = detector.find(&mask, &Cleanup::default(), WristModel::builtin())?;
     /// assert!(hands[0].direction[1] < -0.9, "it points up");
-    /// assert_eq!(finder.isolate(&hands[0])[(79, 40)].0, [255]);
+    /// assert_eq!(detector.isolate(&hands[0])[(79, 40)].0, [255]);
     /// # Ok::<(), phalanx_segmentation::Error>(())
     /// ```
     pub fn find(
@@ -98,7 +98,7 @@ impl HandFinder {
         mask: &GrayImage,
         cleanup: &Cleanup,
         model: &WristModel,
-    ) -> Result<Vec<LocatedHand>> {
+    ) -> Result<Vec<HandDetection>> {
         let (mut hands, mut unlikely) = (Vec::new(), Vec::new());
         for component in self.components_of(mask, cleanup)? {
             self.load(component);
@@ -109,14 +109,14 @@ impl HandFinder {
             }
         }
         for hands in [&mut hands, &mut unlikely] {
-            hands.sort_by(|a, b| a.strangeness.total_cmp(&b.strangeness));
+            hands.sort_by(|a, b| a.mahalanobis2.total_cmp(&b.mahalanobis2));
         }
         hands.append(&mut unlikely);
         if hands.is_empty() { Err(Error::NoHand) } else { Ok(hands) }
     }
 
     /// The mask of the last search with nothing but a hand's component, and its arm.
-    pub fn isolate(&self, hand: &LocatedHand) -> GrayImage {
+    pub fn isolate(&self, hand: &HandDetection) -> GrayImage {
         let mut mask = self.cleaned.clone();
         let width = mask.width() as usize;
         let others = |component: usize, _| component != hand.component;
@@ -130,7 +130,7 @@ impl HandFinder {
         &mut self,
         mask: &GrayImage,
         wrist: [f64; 2],
-    ) -> Result<Option<(&Sections, usize)>> {
+    ) -> Result<Option<(&CrossSections, usize)>> {
         self.components_of(mask, &Cleanup::default())?;
         let Some((largest, _)) = self.components.largest() else { return Ok(None) };
         self.load(largest);
@@ -192,16 +192,16 @@ impl HandFinder {
         source: &[usize],
         component: usize,
         model: &WristModel,
-    ) -> Vec<LocatedHand> {
+    ) -> Vec<HandDetection> {
         self.geodesic.measure(&self.grid, source);
         self.sections.fill(&self.grid, &self.geodesic);
         let sections = &self.sections;
         let mut candidates: Vec<Candidate> = (0..sections.count())
             .filter_map(|section| {
                 let features = sections.features(section)?;
-                let (evidence, strangeness) =
-                    (model.evidence(&features), model.strangeness(&features));
-                Some(Candidate { section, evidence, strangeness })
+                let (evidence, mahalanobis2) =
+                    (model.evidence(&features), model.mahalanobis2(&features));
+                Some(Candidate { section, evidence, mahalanobis2 })
             })
             .collect();
         candidates.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
@@ -219,11 +219,11 @@ impl HandFinder {
     }
 
     /// The hand ahead of a section.
-    fn hand_at(&self, candidate: &Candidate, component: usize) -> Option<LocatedHand> {
+    fn hand_at(&self, candidate: &Candidate, component: usize) -> Option<HandDetection> {
         let section = candidate.section;
         let direction = self.direction(section)?;
         let (wrist, scale) = (self.sections.centres[section], self.grid.scale as f64);
-        let mut hand = LocatedHand {
+        let mut hand = HandDetection {
             wrist,
             direction,
             width: self.sections.width(section) * scale,
@@ -232,7 +232,7 @@ impl HandFinder {
             area: 0.0,
             arm: self.visible_arm(section) * scale,
             cut_off: false,
-            strangeness: candidate.strangeness,
+            mahalanobis2: candidate.mahalanobis2,
             component,
         };
         let ahead = |&cell: &usize| {

@@ -43,7 +43,7 @@ impl WristModel {
 
     /// How far the features are from those of wrists: a squared Mahalanobis distance, about 11 on
     /// average at wrists.
-    pub(crate) fn strangeness(&self, features: &Features) -> f64 {
+    pub(crate) fn mahalanobis2(&self, features: &Features) -> f64 {
         self.classes[0].distance(features)
     }
 

@@ -3,7 +3,7 @@
 use image::GrayImage;
 
 use crate::detect::cross_sections::FEATURES;
-use crate::detect::detector::HandFinder;
+use crate::detect::detector::HandDetector;
 use crate::detect::gaussian::Moments;
 use crate::detect::wrist_model::WristModel;
 use crate::error::{Error, Result};
@@ -14,13 +14,13 @@ const VARIANCE_FLOOR: f64 = 1e-3;
 /// Learns a [`WristModel`] from silhouettes whose wrists are known.
 #[derive(Debug, Clone, Default)]
 pub struct WristTrainer {
-    finder: HandFinder,
+    detector: HandDetector,
     moments: [Moments; 2],
     added: usize,
 }
 
 impl WristTrainer {
-    /// Sections further from the wrist than this share of the hand's length are elsewhere.
+    /// CrossSections further from the wrist than this share of the hand's length are elsewhere.
     const APART: f64 = 0.15;
 
     /// Adds a silhouette of one hand whose arm leaves by the image border, and where its wrist is,
@@ -29,7 +29,7 @@ impl WristTrainer {
     /// # Errors
     /// No hand in the mask.
     pub fn add(&mut self, mask: &GrayImage, wrist: [f64; 2]) -> Result<bool> {
-        let Some((sections, at)) = self.finder.sections_at(mask, wrist)? else {
+        let Some((sections, at)) = self.detector.sections_at(mask, wrist)? else {
             return Ok(false);
         };
         let Some(features) = sections.features(at) else { return Ok(false) };

@@ -9,7 +9,7 @@ use crate::masking::otsu::otsu;
 /// A plain wall behind the hand, evenly coloured but perhaps unevenly lit. It needs no training
 /// and no recorded background, and the hand may cover less than half of the image border.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Wall {
+pub enum PlainBackground {
     /// Bright and paler than the hand: the hand is what is more saturated than the wall. Shadows on
     /// the wall change its brightness and not its hue, and are no hand.
     Bright,
@@ -23,18 +23,18 @@ const LEAST_CONTRAST: f64 = 20.0;
 /// Below this level, of 255, channels are too noisy for saturation to mean much.
 const DARKEST: f32 = 32.0;
 
-impl Wall {
+impl PlainBackground {
     /// The mask of the hand, 255 in it and 0 elsewhere, as large as the image. The wall's colour is
     /// the median along the image border, and the threshold is Otsu's.
     ///
     /// ```
     /// use image::{Rgb, RgbImage};
-    /// use phalanx_segmentation::Wall;
+    /// use phalanx_segmentation::PlainBackground;
     ///
     /// let picture = RgbImage::from_fn(40, 30, |x, y| {
     ///     Rgb(if (15..25).contains(&x) && y >= 10 { [200, 140, 110] } else { [230, 230, 228] })
     /// });
-    /// let mask = Wall::Bright.segment(&picture)?;
+    /// let mask = PlainBackground::Bright.segment(&picture)?;
     /// assert_eq!((mask[(20, 20)].0, mask[(2, 2)].0), ([255], [0]));
     /// # Ok::<(), phalanx_segmentation::Error>(())
     /// ```

@@ -5,7 +5,7 @@ use image::GrayImage;
 use crate::error::{Error, Result};
 use crate::mask::cleanup::{Workspace, keep_largest};
 use crate::silhouette::contour::Contour;
-use crate::silhouette::forearm::{Evidence, Forearm};
+use crate::silhouette::forearm::{Forearm, ForearmCue};
 
 /// The shortest side of an image with a silhouette, in pixels.
 pub const MIN_SIDE: u32 = 16;
@@ -25,7 +25,7 @@ impl Default for Silhouette {
     /// An empty silhouette, for [`Silhouette::extract_into`] to fill.
     fn default() -> Self {
         let (end, sides) = ([0.0; 2], [[0.0; 2]; 2]);
-        let forearm = Forearm { end, sides, evidence: Evidence::Stump, crossings: 0 };
+        let forearm = Forearm { end, sides, cue: ForearmCue::SmoothEnd, crossings: 0 };
         Self { mask: GrayImage::default(), contour: Contour::default(), forearm }
     }
 }
@@ -36,14 +36,14 @@ impl Silhouette {
     ///
     /// ```
     /// use image::{GrayImage, Luma};
-    /// use phalanx_segmentation::{Evidence, Silhouette};
+    /// use phalanx_segmentation::{ForearmCue, Silhouette};
     ///
     /// let mask = GrayImage::from_fn(40, 30, |x, y| {
     ///     Luma([if (15..25).contains(&x) && y >= 10 { 255 } else { 0 }])
     /// });
     /// let silhouette = Silhouette::from_mask(&mask)?;
     /// assert_eq!(silhouette.forearm.end, [20.0, 29.5]);
-    /// assert_eq!(silhouette.forearm.evidence, Evidence::Border);
+    /// assert_eq!(silhouette.forearm.cue, ForearmCue::Border);
     /// # Ok::<(), phalanx_segmentation::Error>(())
     /// ```
     pub fn from_mask(mask: &GrayImage) -> Result<Self> {

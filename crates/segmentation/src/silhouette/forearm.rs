@@ -4,15 +4,15 @@ use image::GrayImage;
 
 use crate::error::Result;
 use crate::silhouette::contour::Contour;
-use crate::silhouette::forearm_end::{Stump, find_stump};
+use crate::silhouette::forearm_end::{SmoothEnd, find_smooth_end};
 
 /// What the end of the forearm was recognised by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Evidence {
+pub enum ForearmCue {
     /// The silhouette crosses the image border.
     Border,
     /// The silhouette crosses no border; one of its ends is a smooth stump.
-    Stump,
+    SmoothEnd,
 }
 
 /// The end of the forearm that is away from the hand.
@@ -24,9 +24,9 @@ pub struct Forearm {
     /// of a stump's end.
     pub sides: [[f64; 2]; 2],
     /// What it was recognised by.
-    pub evidence: Evidence,
+    pub cue: ForearmCue,
     /// How often the silhouette crosses the image border: 1 is as it should be, 0 goes with
-    /// [`Evidence::Stump`], and with 2 or more the longest crossing was taken.
+    /// [`ForearmCue::SmoothEnd`], and with 2 or more the longest crossing was taken.
     pub crossings: usize,
 }
 
@@ -40,8 +40,8 @@ impl Forearm {
         if let Some(forearm) = border_crossing(mask) {
             return Ok(forearm);
         }
-        let Stump { end, sides } = find_stump(mask, contour)?;
-        Ok(Forearm { end, sides, evidence: Evidence::Stump, crossings: 0 })
+        let SmoothEnd { end, sides } = find_smooth_end(mask, contour)?;
+        Ok(Forearm { end, sides, cue: ForearmCue::SmoothEnd, crossings: 0 })
     }
 }
 
@@ -81,5 +81,5 @@ fn border_crossing(mask: &GrayImage) -> Option<Forearm> {
     let after = centre((longest.start + last).div_ceil(2))?;
     let end = [f64::midpoint(before[0], after[0]), f64::midpoint(before[1], after[1])];
     let sides = [centre(longest.start)?, centre(last)?];
-    Some(Forearm { end, sides, evidence: Evidence::Border, crossings })
+    Some(Forearm { end, sides, cue: ForearmCue::Border, crossings })
 }

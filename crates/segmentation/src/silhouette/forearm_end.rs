@@ -43,7 +43,7 @@ impl End {
 }
 
 /// The end of a forearm that is in the picture, in pixels.
-pub(crate) struct Stump {
+pub(crate) struct SmoothEnd {
     /// Its middle.
     pub(crate) end: [f64; 2],
     /// Either side of the middle, at the forearm's mean width.
@@ -52,7 +52,7 @@ pub(crate) struct Stump {
 
 /// The end that is a smooth stump rather than fingers. Of two smooth ends, such as
 /// those of a fist, the forearm is the narrower one.
-pub(crate) fn find_stump(mask: &GrayImage, contour: &Contour) -> Result<Stump> {
+pub(crate) fn find_smooth_end(mask: &GrayImage, contour: &Contour) -> Result<SmoothEnd> {
     let axis = PrincipalAxis::of(mask);
     let ends = axis.ends(mask, contour);
     let raggedness = ends.map(|end| end.raggedness());
@@ -69,7 +69,7 @@ pub(crate) fn find_stump(mask: &GrayImage, contour: &Contour) -> Result<Stump> {
     let forearm = ends[usize::from(measures[1] < measures[0])];
     let end = forearm.tip_sum.map(|sum| sum / forearm.tip_count as f64);
     let [dx, dy] = axis.direction.map(|c| c * forearm.width() / 2.0);
-    Ok(Stump { end, sides: [[end[0] - dy, end[1] + dx], [end[0] + dy, end[1] - dx]] })
+    Ok(SmoothEnd { end, sides: [[end[0] - dy, end[1] + dx], [end[0] + dy, end[1] - dx]] })
 }
 
 struct PrincipalAxis {

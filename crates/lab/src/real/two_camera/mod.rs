@@ -252,7 +252,7 @@ fn line(look: &Look) -> String {
                     let cut_off = if hand.cut_off { ", cut off" } else { "" };
                     format!(
                         "wrist {:.0},{:.0} length {:.0} width {:.0} strangeness {:.1}{cut_off}",
-                        hand.wrist[0], hand.wrist[1], hand.length, hand.width, hand.strangeness
+                        hand.wrist[0], hand.wrist[1], hand.length, hand.width, hand.mahalanobis2
                     )
                 })
                 .collect();
