@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     ensure!(is_empty, "{}: the folder is not empty; name another with --out", folder.display());
     let rig = Rig::from_toml(DESK)?;
     // Someone's hand, 5 % larger than the mean one that fitting begins with.
-    let hand = HandShape::adult().varied(|| 1.05);
+    let hand = HandShape::adult().scaled(|| 1.05);
     let poses: Vec<Pose> = (0..MOMENTS).map(pose).collect();
     let frames: Vec<TakeFrame> =
         poses.iter().map(|pose| drawn(&rig, &hand, pose)).collect::<Result<_>>()?;

@@ -39,15 +39,15 @@ fn pose(bent: &[Digit]) -> Pose {
 /// The solids, the lower ones first, and the joints on top.
 fn draw(hand: &PosedHand, middle: f64) {
     let place = |point: DVec3| [middle - point.x, HEIGHT - 45.0 - point.z];
-    let height = |solid: &Primitive| solid.balls().iter().map(|b| b.center.y).sum::<f64>();
+    let height = |solid: &Primitive| solid.spheres().iter().map(|b| b.center.y).sum::<f64>();
     let mut solids: Vec<&Primitive> = hand.primitives.iter().collect();
     solids.sort_by(|a, b| {
-        (height(a) / a.balls().len() as f64).total_cmp(&(height(b) / b.balls().len() as f64))
+        (height(a) / a.spheres().len() as f64).total_cmp(&(height(b) / b.spheres().len() as f64))
     });
     for solid in solids {
-        let balls = solid.balls().iter().map(|ball| (place(ball.center), ball.radius));
-        let balls: Vec<_> = balls.collect();
-        println!(r##"<path fill="#e8c4a8" stroke="#b08968" d="{}"/>"##, outline(&balls));
+        let spheres = solid.spheres().iter().map(|sphere| (place(sphere.center), sphere.radius));
+        let spheres: Vec<_> = spheres.collect();
+        println!(r##"<path fill="#e8c4a8" stroke="#b08968" d="{}"/>"##, outline(&spheres));
     }
     for finger in (1..JOINTS).step_by(4) {
         let chain = std::iter::once(0).chain(finger..finger + 4);
@@ -67,7 +67,7 @@ fn outline(discs: &[([f64; 2], f64)]) -> String {
             let (sin, cos) = (f64::from(step) / 60.0 * std::f64::consts::TAU).sin_cos();
             let reach = |&([x, y], radius): &([f64; 2], f64)| x * cos + y * sin + radius;
             let furthest = discs.iter().max_by(|a, b| reach(a).total_cmp(&reach(b)));
-            let &([x, y], radius) = furthest.expect("a solid has balls");
+            let &([x, y], radius) = furthest.expect("a solid has spheres");
             format!("{:.1} {:.1}", x + radius * cos, y + radius * sin)
         })
         .collect();

@@ -3,11 +3,11 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use crate::dof::{Digit, Dof};
-use crate::motion::Link;
-use crate::motion::{Motion, Motions};
 use crate::pose::Pose;
-use crate::primitive::{Ball, Primitive};
+use crate::primitive::{Primitive, Sphere};
 use crate::shape::{FingerShape, HandShape, Side, ThumbShape};
+use crate::twist::Bone;
+use crate::twist::{Twist, Twists};
 
 /// How many joints a posed hand reports.
 pub const JOINTS: usize = 21;
@@ -20,9 +20,9 @@ pub struct PosedHand {
     pub joints: [DVec3; JOINTS],
     /// The solids whose union is the hand and forearm, mm.
     pub primitives: Vec<Primitive>,
-    /// What the balls of each solid move with, in the order of its balls; the last is repeated
+    /// What the spheres of each solid move with, in the order of its spheres; the last is repeated
     /// where there are fewer than three.
-    pub links: Vec<[Link; 3]>,
+    pub bones: Vec<[Bone; 3]>,
 }
 
 /// A digit's four joints, the directions of its three segments and the axes that it turns about.
@@ -33,22 +33,22 @@ struct Chain {
     flexion_axis: DVec3,
 }
 
-/// The solids of a hand as they are made, each with what its balls move with.
+/// The solids of a hand as they are made, each with what its spheres move with.
 #[derive(Default)]
 struct Solids {
     primitives: Vec<Primitive>,
-    links: Vec<[Link; 3]>,
+    bones: Vec<[Bone; 3]>,
 }
 
 impl Solids {
-    fn wedge(&mut self, corners: [(Ball, Link); 3]) {
-        self.primitives.push(Primitive::Wedge(corners.map(|(ball, _)| ball)));
-        self.links.push(corners.map(|(_, link)| link));
+    fn wedge(&mut self, corners: [(Sphere, Bone); 3]) {
+        self.primitives.push(Primitive::Wedge(corners.map(|(sphere, _)| sphere)));
+        self.bones.push(corners.map(|(_, bone)| bone));
     }
 
-    fn round_cone(&mut self, ends: [(Ball, Link); 2]) {
-        self.primitives.push(Primitive::RoundCone(ends.map(|(ball, _)| ball)));
-        self.links.push([ends[0].1, ends[1].1, ends[1].1]);
+    fn round_cone(&mut self, ends: [(Sphere, Bone); 2]) {
+        self.primitives.push(Primitive::RoundCone(ends.map(|(sphere, _)| sphere)));
+        self.bones.push([ends[0].1, ends[1].1, ends[1].1]);
     }
 }
 
@@ -72,7 +72,7 @@ impl HandShape {
         PosedHand {
             joints: joints.map(|joint| motion.transform_point3(joint)),
             primitives: solids.primitives.iter().map(|solid| solid.moved(&motion)).collect(),
-            links: solids.links,
+            bones: solids.bones,
         }
     }
 
@@ -88,14 +88,14 @@ impl HandShape {
     /// let mut bent = Pose::REST;
     /// bent[Dof::IndexPip] = 1e-6;
     /// let moved = (tip(&bent) - tip(&Pose::REST)) / 1e-6;
-    /// let motions = shape.motions(&Pose::REST, &rest);
-    /// assert!((motions.of(Dof::IndexPip).velocity(tip(&Pose::REST)) - moved).length() < 1e-3);
+    /// let twists = shape.twists(&Pose::REST, &rest);
+    /// assert!((twists.of(Dof::IndexPip).velocity(tip(&Pose::REST)) - moved).length() < 1e-3);
     /// ```
-    pub fn motions(&self, pose: &Pose, rest: &DAffine3) -> Motions {
+    pub fn twists(&self, pose: &Pose, rest: &DAffine3) -> Twists {
         let (palm, rotation) = (palm_rotation(pose), pose.rotation());
         let own = *rest * self.global_motion(pose);
         // A mirror turns the sense of rotations about it.
-        let turn = |frame: DMat3, axis: DVec3, origin: DVec3| Motion::Turn {
+        let turn = |frame: DMat3, axis: DVec3, origin: DVec3| Twist::Turn {
             axis: frame * axis * frame.determinant().signum(),
             origin: own.transform_point3(origin),
         };
@@ -103,14 +103,14 @@ impl HandShape {
         let about_x = DMat3::from_rotation_x(pose[Dof::ThetaX]);
         let about_y = about_x * DMat3::from_rotation_y(pose[Dof::ThetaY]);
         let deviated = rotation * DMat3::from_rotation_y(pose[Dof::WristDeviation]);
-        let mut motions = [Motion::Shift(DVec3::ZERO); Dof::COUNT];
-        let mut set = |dof: Dof, motion: Motion| motions[dof.index()] = motion;
+        let mut twists = [Twist::Shift(DVec3::ZERO); Dof::COUNT];
+        let mut set = |dof: Dof, motion: Twist| twists[dof.index()] = motion;
         set(Dof::ThetaX, turn(outer, DVec3::X, DVec3::ZERO));
         set(Dof::ThetaY, turn(outer, about_x.y_axis, DVec3::ZERO));
         set(Dof::ThetaZ, turn(outer, about_y.z_axis, DVec3::ZERO));
-        set(Dof::TX, Motion::Shift(rest.matrix3.x_axis));
-        set(Dof::TY, Motion::Shift(rest.matrix3.y_axis));
-        set(Dof::TZ, Motion::Shift(rest.matrix3.z_axis));
+        set(Dof::TX, Twist::Shift(rest.matrix3.x_axis));
+        set(Dof::TY, Twist::Shift(rest.matrix3.y_axis));
+        set(Dof::TZ, Twist::Shift(rest.matrix3.z_axis));
         set(Dof::WristDeviation, turn(outer, rotation.y_axis, DVec3::ZERO));
         set(Dof::WristFlexion, turn(outer, deviated.x_axis, DVec3::ZERO));
         let chains = self.chains(pose).map(|chain| chain.turned(palm));
@@ -121,7 +121,7 @@ impl HandShape {
                 set(flexion, turn(own.matrix3, chain.flexion_axis, joint));
             }
         }
-        Motions(motions)
+        Twists(twists)
     }
 
     /// From the right hand's own frame to the frame of the hand at rest.
@@ -149,9 +149,9 @@ impl HandShape {
     fn solids(&self, chains: &[Chain; 5], palm: DMat3) -> Solids {
         let mut solids = Solids::default();
         solids.primitives.push(self.forearm_solid());
-        solids.links.push([Link::Forearm; 3]);
+        solids.bones.push([Bone::Forearm; 3]);
         self.push_palm(&mut solids, chains, palm);
-        self.push_thumb_ball(&mut solids, chains, palm);
+        self.push_thumb_sphere(&mut solids, chains, palm);
         chains[0].push_segments(&mut solids, Digit::Thumb, &self.thumb.radii_mm);
         for (k, finger) in self.fingers().into_iter().enumerate() {
             chains[k + 1].push_segments(&mut solids, Digit::FINGERS[k], &finger.radii_mm);
@@ -164,8 +164,8 @@ impl HandShape {
         let [wrist, far] = forearm.half_widths_mm;
         // The round cap of the wrist's end stays behind the wrist.
         let ends = [
-            Ball::new(DVec3::new(0.0, 0.0, -0.5 * wrist), wrist),
-            Ball::new(DVec3::new(0.0, 0.0, -forearm.length_mm), far),
+            Sphere::new(DVec3::new(0.0, 0.0, -0.5 * wrist), wrist),
+            Sphere::new(DVec3::new(0.0, 0.0, -forearm.length_mm), far),
         ];
         Primitive::GeneralisedCylinder { ends, thin_axis: DVec3::Y, flatness: forearm.flatness }
     }
@@ -174,12 +174,12 @@ impl HandShape {
     /// the fingers.
     fn push_palm(&self, solids: &mut Solids, chains: &[Chain; 5], palm: DMat3) {
         let shape = &self.palm;
-        let [thumb_side, little_side] = self.wrist_balls(palm).map(|ball| (ball, Link::Palm));
-        let knuckles: [(Ball, Link); 4] = std::array::from_fn(|k| {
-            (Ball::new(chains[k + 1].joints[0], shape.knuckle_radii_mm[k]), Link::Palm)
+        let [thumb_side, little_side] = self.wrist_spheres(palm).map(|sphere| (sphere, Bone::Palm));
+        let knuckles: [(Sphere, Bone); 4] = std::array::from_fn(|k| {
+            (Sphere::new(chains[k + 1].joints[0], shape.knuckle_radii_mm[k]), Bone::Palm)
         });
         let [index, middle, ring, little] = knuckles;
-        let heel = (Ball::new(palm * shape.heel_mm, shape.heel_radius_mm), Link::Palm);
+        let heel = (Sphere::new(palm * shape.heel_mm, shape.heel_radius_mm), Bone::Palm);
         solids.wedge([thumb_side, index, middle]);
         solids.wedge([thumb_side, little_side, middle]);
         solids.wedge([little_side, middle, ring]);
@@ -191,7 +191,7 @@ impl HandShape {
                 let chain = &chains[k + 1];
                 let along = shape.web_reach * fingers[k].lengths_mm[0];
                 let center = chain.joints[0] + chain.directions[0] * along;
-                (Ball::new(center, shape.web_radius_mm), Link::Segment(Digit::FINGERS[k], 0))
+                (Sphere::new(center, shape.web_radius_mm), Bone::Segment(Digit::FINGERS[k], 0))
             };
             let (near, next) = (web(pair), web(pair + 1));
             solids.wedge([knuckles[pair], near, next]);
@@ -199,30 +199,30 @@ impl HandShape {
         }
     }
 
-    /// The ball of the thumb and the web between thumb and index finger.
-    fn push_thumb_ball(&self, solids: &mut Solids, chains: &[Chain; 5], palm: DMat3) {
+    /// The sphere of the thumb and the web between thumb and index finger.
+    fn push_thumb_sphere(&self, solids: &mut Solids, chains: &[Chain; 5], palm: DMat3) {
         let shape = &self.palm;
-        let metacarpal = Link::Segment(Digit::Thumb, 0);
-        let [thumb_side, _] = self.wrist_balls(palm).map(|ball| (ball, Link::Palm));
+        let metacarpal = Bone::Segment(Digit::Thumb, 0);
+        let [thumb_side, _] = self.wrist_spheres(palm).map(|sphere| (sphere, Bone::Palm));
         let [base, mcp, ..] = chains[0].joints;
         let index_knuckle = chains[1].joints[0];
         let [base_radius, mcp_radius, ..] = self.thumb.radii_mm;
-        let thin = |at: DVec3| Ball::new(at, shape.thumb_web_radius_mm);
-        let root = (Ball::new(base, base_radius), metacarpal);
-        solids.wedge([thumb_side, root, (Ball::new(mcp, mcp_radius), metacarpal)]);
+        let thin = |at: DVec3| Sphere::new(at, shape.thumb_web_radius_mm);
+        let root = (Sphere::new(base, base_radius), metacarpal);
+        solids.wedge([thumb_side, root, (Sphere::new(mcp, mcp_radius), metacarpal)]);
         solids.wedge([
             root,
             (thin(base.lerp(mcp, 0.85)), metacarpal),
-            (thin(thumb_side.0.center.lerp(index_knuckle, 0.8)), Link::Palm),
+            (thin(thumb_side.0.center.lerp(index_knuckle, 0.8)), Bone::Palm),
         ]);
     }
 
     /// The wrist's thumb side and little finger's side.
-    fn wrist_balls(&self, palm: DMat3) -> [Ball; 2] {
+    fn wrist_spheres(&self, palm: DMat3) -> [Sphere; 2] {
         let shape = &self.palm;
         [1.0, -1.0].map(|side| {
             let center = palm * DVec3::new(side * shape.wrist_half_width_mm, 0.0, 4.0);
-            Ball::new(center, shape.wrist_radius_mm)
+            Sphere::new(center, shape.wrist_radius_mm)
         })
     }
 }
@@ -277,13 +277,14 @@ impl Chain {
         }
     }
 
-    /// The three segments; the last ball ends at the skin.
+    /// The three segments; the last sphere ends at the skin.
     fn push_segments(&self, solids: &mut Solids, digit: Digit, radii: &[f64; 4]) {
-        let mut balls: [Ball; 4] = std::array::from_fn(|k| Ball::new(self.joints[k], radii[k]));
-        balls[3].center -= self.directions[2] * radii[3];
+        let mut spheres: [Sphere; 4] =
+            std::array::from_fn(|k| Sphere::new(self.joints[k], radii[k]));
+        spheres[3].center -= self.directions[2] * radii[3];
         for segment in 0..3 {
-            let link = Link::Segment(digit, segment);
-            solids.round_cone([(balls[segment], link), (balls[segment + 1], link)]);
+            let bone = Bone::Segment(digit, segment);
+            solids.round_cone([(spheres[segment], bone), (spheres[segment + 1], bone)]);
         }
     }
 }

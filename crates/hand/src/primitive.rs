@@ -2,37 +2,37 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-/// A ball: centre and radius, both in millimetres.
+/// A sphere: centre and radius, both in millimetres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ball {
+pub struct Sphere {
     /// Centre, mm.
     pub center: DVec3,
     /// Radius, mm; positive.
     pub radius: f64,
 }
 
-impl Ball {
-    /// A ball from its centre and radius, mm.
+impl Sphere {
+    /// A sphere from its centre and radius, mm.
     pub const fn new(center: DVec3, radius: f64) -> Self {
         Self { center, radius }
     }
 }
 
-/// A convex solid of the hand. Each is the convex hull of balls, or a squashed one, so that its
+/// A convex solid of the hand. Each is the convex hull of spheres, or a squashed one, so that its
 /// outline in any pinhole camera is the convex hull of ellipses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Primitive {
-    /// One ball.
-    Sphere(Ball),
-    /// The convex hull of two balls: a finger's phalanx.
-    RoundCone([Ball; 2]),
-    /// The convex hull of three balls: a piece of the palm or of the web between fingers.
-    Wedge([Ball; 3]),
-    /// The convex hull of two balls, squashed: a cylinder of elliptic section that may taper,
+    /// One sphere.
+    Sphere(Sphere),
+    /// The convex hull of two spheres: a finger's phalanx.
+    RoundCone([Sphere; 2]),
+    /// The convex hull of three spheres: a piece of the palm or of the web between fingers.
+    Wedge([Sphere; 3]),
+    /// The convex hull of two spheres, squashed: a cylinder of elliptic section that may taper,
     /// such as the forearm.
     GeneralisedCylinder {
         /// The two ends before squashing, mm. Their line is not parallel to `thin_axis`.
-        ends: [Ball; 2],
+        ends: [Sphere; 2],
         /// Unit vector along which the solid is squashed about `ends[0].center`.
         thin_axis: DVec3,
         /// Thickness along `thin_axis` over width across it, in (0, 1].
@@ -41,18 +41,18 @@ pub enum Primitive {
 }
 
 impl Primitive {
-    /// The balls whose hull the solid is (before squashing).
-    pub fn balls(&self) -> &[Ball] {
+    /// The spheres whose hull the solid is (before squashing).
+    pub fn spheres(&self) -> &[Sphere] {
         match self {
-            Self::Sphere(ball) => std::slice::from_ref(ball),
-            Self::RoundCone(balls) => balls,
-            Self::Wedge(balls) => balls,
+            Self::Sphere(sphere) => std::slice::from_ref(sphere),
+            Self::RoundCone(spheres) => spheres,
+            Self::Wedge(spheres) => spheres,
             Self::GeneralisedCylinder { ends, .. } => ends,
         }
     }
 
-    /// The squash S (symmetric, 3×3) that maps the hull of [`balls`](Self::balls), taken
-    /// relative to the first ball's centre, to the solid; the identity for round solids.
+    /// The squash S (symmetric, 3×3) that maps the hull of [`spheres`](Self::spheres), taken
+    /// relative to the first sphere's centre, to the solid; the identity for round solids.
     pub fn squash(&self) -> DMat3 {
         match self {
             Self::GeneralisedCylinder { thin_axis: n, flatness, .. } => {
@@ -67,21 +67,21 @@ impl Primitive {
     ///
     /// ```
     /// use glam::{DAffine3, DVec3};
-    /// use phalanx_hand::{Ball, Primitive};
+    /// use phalanx_hand::{Sphere, Primitive};
     ///
     /// let up = DAffine3::from_translation(DVec3::Y);
-    /// let ball = Primitive::Sphere(Ball::new(DVec3::ZERO, 8.0));
-    /// assert_eq!(ball.moved(&up).balls(), [Ball::new(DVec3::Y, 8.0)]);
+    /// let sphere = Primitive::Sphere(Sphere::new(DVec3::ZERO, 8.0));
+    /// assert_eq!(sphere.moved(&up).spheres(), [Sphere::new(DVec3::Y, 8.0)]);
     /// ```
     #[must_use]
     pub fn moved(&self, motion: &DAffine3) -> Self {
-        let ball = |b: &Ball| Ball::new(motion.transform_point3(b.center), b.radius);
+        let sphere = |b: &Sphere| Sphere::new(motion.transform_point3(b.center), b.radius);
         match self {
-            Self::Sphere(b) => Self::Sphere(ball(b)),
-            Self::RoundCone(balls) => Self::RoundCone(balls.each_ref().map(ball)),
-            Self::Wedge(balls) => Self::Wedge(balls.each_ref().map(ball)),
+            Self::Sphere(b) => Self::Sphere(sphere(b)),
+            Self::RoundCone(spheres) => Self::RoundCone(spheres.each_ref().map(sphere)),
+            Self::Wedge(spheres) => Self::Wedge(spheres.each_ref().map(sphere)),
             Self::GeneralisedCylinder { ends, thin_axis, flatness } => Self::GeneralisedCylinder {
-                ends: ends.each_ref().map(ball),
+                ends: ends.each_ref().map(sphere),
                 thin_axis: motion.transform_vector3(*thin_axis),
                 flatness: *flatness,
             },

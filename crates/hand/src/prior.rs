@@ -10,7 +10,7 @@ use crate::pose::{Pose, abduction_limit};
 /// plausible ranges.
 ///
 /// `uniform` gives numbers that are uniform in [0, 1); four are taken.
-pub fn coupled_posture(digit: Digit, mut uniform: impl FnMut() -> f64) -> [f64; 4] {
+pub fn sample_posture(digit: Digit, mut uniform: impl FnMut() -> f64) -> [f64; 4] {
     let mut curl = || (std::f64::consts::FRAC_PI_2 * uniform()).sin().powi(2);
     let (outer, base) = (curl(), curl());
     let spread = 2.0 * uniform() - 1.0;
@@ -31,10 +31,10 @@ pub fn coupled_posture(digit: Digit, mut uniform: impl FnMut() -> f64) -> [f64; 
     degrees.map(f64::to_radians)
 }
 
-/// A pose whose digits are independent [`coupled_posture`]s; all else is at rest.
+/// A pose whose digits are independent [`sample_posture`]s; all else is at rest.
 ///
 /// ```
-/// use phalanx_hand::{Dof, coupled_pose};
+/// use phalanx_hand::{Dof, sample_pose};
 ///
 /// let mut state = 1_u64; // any generator will do
 /// let mut uniform = || {
@@ -42,16 +42,16 @@ pub fn coupled_posture(digit: Digit, mut uniform: impl FnMut() -> f64) -> [f64; 
 ///     (state >> 11) as f64 / (1_u64 << 53) as f64
 /// };
 /// for _ in 0..100 {
-///     let pose = coupled_pose(&mut uniform);
+///     let pose = sample_pose(&mut uniform);
 ///     assert_eq!(pose.out_of_range(), []);
 ///     let uncoupled = pose[Dof::IndexDip] - 2.0 / 3.0 * pose[Dof::IndexPip];
 ///     assert!(uncoupled.abs() < 6.1_f64.to_radians());
 /// }
 /// ```
-pub fn coupled_pose(mut uniform: impl FnMut() -> f64) -> Pose {
+pub fn sample_pose(mut uniform: impl FnMut() -> f64) -> Pose {
     let mut pose = Pose::REST;
     for digit in Digit::ALL {
-        let posture = coupled_posture(digit, &mut uniform);
+        let posture = sample_posture(digit, &mut uniform);
         for (dof, angle) in digit.dofs().into_iter().zip(posture) {
             pose[dof] = angle;
         }
@@ -61,7 +61,7 @@ pub fn coupled_pose(mut uniform: impl FnMut() -> f64) -> Pose {
 
 /// A pose whose 20 internal angles are independent and uniform in their plausible ranges, without
 /// any coupling: also such as no hand can take. All else is at rest.
-pub fn uncoupled_pose(mut uniform: impl FnMut() -> f64) -> Pose {
+pub fn sample_pose_independent(mut uniform: impl FnMut() -> f64) -> Pose {
     let mut pose = Pose::REST;
     for dof in Dof::ALL.into_iter().filter(|dof| dof.is_internal()) {
         let (low, high) = dof.range();

@@ -74,7 +74,7 @@ pub struct ThumbShape {
     pub radii_mm: [f64; 4],
 }
 
-/// The palm: a slab between the wrist and the four knuckles, the ball of the thumb, and the
+/// The palm: a slab between the wrist and the four knuckles, the sphere of the thumb, and the
 /// webs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -14,12 +14,12 @@ impl HandShape {
     /// use glam::DAffine3;
     /// use phalanx_hand::{HandShape, Pose};
     ///
-    /// let larger = HandShape::adult().varied(|| 1.1);
+    /// let larger = HandShape::adult().scaled(|| 1.1);
     /// let reach = |shape: &HandShape| shape.pose(&Pose::REST, &DAffine3::IDENTITY).joints[12].length();
     /// assert!((reach(&larger) / reach(&HandShape::adult()) - 1.1).abs() < 1e-9);
     /// ```
     #[must_use]
-    pub fn varied(&self, mut factor: impl FnMut() -> f64) -> Self {
+    pub fn scaled(&self, mut factor: impl FnMut() -> f64) -> Self {
         let vary = &mut factor;
         let mut finger = |shape: &FingerShape| FingerShape {
             base_mm: length(shape.base_mm, vary),

@@ -1,8 +1,8 @@
 //! Everything public can be sent to, and shared between, threads.
 
 use phalanx_hand::{
-    Ball, Digit, Dof, Error, FingerShape, ForearmShape, HandShape, Link, Motion, Motions,
-    PalmShape, Pose, PoseTable, PosedHand, Primitive, Side, ThumbShape, Unit,
+    Bone, Digit, Dof, Error, FingerShape, ForearmShape, HandShape, PalmShape, Pose, PoseTable,
+    PosedHand, Primitive, Side, Sphere, ThumbShape, Twist, Twists, Unit,
 };
 
 const fn shared<T: Send + Sync>() {}
@@ -13,16 +13,16 @@ macro_rules! shared {
 
 // A type that is not makes the tests fail to compile.
 shared!(
-    Ball,
+    Sphere,
     Digit,
     Dof,
     Error,
     FingerShape,
     ForearmShape,
     HandShape,
-    Link,
-    Motion,
-    Motions,
+    Bone,
+    Twist,
+    Twists,
     PalmShape,
     Pose,
     PosedHand,

@@ -62,7 +62,7 @@ proptest! {
             prop_assert!(mirror.transform_point3(*a).distance(b) < 1e-9);
         }
         for (a, b) in right.primitives.iter().zip(&left.primitives) {
-            for (a, b) in a.moved(&mirror).balls().iter().zip(b.balls()) {
+            for (a, b) in a.moved(&mirror).spheres().iter().zip(b.spheres()) {
                 prop_assert!(a.center.distance(b.center) < 1e-9);
             }
         }
@@ -76,7 +76,7 @@ proptest! {
             let at = hand.joints[joint];
             let inside = hand.primitives.iter().any(|solid| {
                 !matches!(solid, Primitive::GeneralisedCylinder { .. })
-                    && solid.balls().iter().any(|ball| ball.center.distance(at) <= ball.radius)
+                    && solid.spheres().iter().any(|sphere| sphere.center.distance(at) <= sphere.radius)
             });
             prop_assert!(inside, "joint {joint} at {at} is outside every solid");
         }

@@ -2,7 +2,7 @@
 
 mod property;
 
-use phalanx_hand::{Dof, HandShape, coupled_pose, uncoupled_pose};
+use phalanx_hand::{Dof, HandShape, sample_pose, sample_pose_independent};
 use proptest::prelude::*;
 
 /// Numbers in [0, 1) that follow from a seed.
@@ -20,19 +20,19 @@ proptest! {
 
     #[test]
     fn coupled_poses_are_plausible(seed: u64) {
-        prop_assert_eq!(coupled_pose(uniform(seed)).out_of_range(), []);
+        prop_assert_eq!(sample_pose(uniform(seed)).out_of_range(), []);
     }
 
     #[test]
     fn dip_follows_pip_where_coupled(seed: u64) {
-        let pose = coupled_pose(uniform(seed));
+        let pose = sample_pose(uniform(seed));
         let expected = (pose[Dof::IndexPip] * 2.0 / 3.0).to_degrees();
         prop_assert!((pose[Dof::IndexDip].to_degrees() - expected).abs() < 6.01);
     }
 
     #[test]
     fn uncoupled_angles_are_each_in_their_range(seed: u64) {
-        let pose = uncoupled_pose(uniform(seed));
+        let pose = sample_pose_independent(uniform(seed));
         for dof in Dof::ALL.into_iter().filter(|dof| dof.is_internal()) {
             let (low, high) = dof.range();
             prop_assert!((low..=high).contains(&pose[dof]), "{dof}");
@@ -42,7 +42,7 @@ proptest! {
     #[test]
     fn a_varied_hand_is_a_hand_within_the_factors(seed: u64) {
         let (adult, mut draw) = (HandShape::adult(), uniform(seed));
-        let varied = adult.varied(|| 0.9 + 0.2 * draw());
+        let varied = adult.scaled(|| 0.9 + 0.2 * draw());
         prop_assert!(varied.validate().is_ok());
         for (new, old) in varied.fingers().iter().zip(adult.fingers()) {
             for (new, old) in new.lengths_mm.iter().zip(old.lengths_mm) {
@@ -56,7 +56,7 @@ proptest! {
 fn every_bone_and_radius_has_a_factor_of_its_own() {
     let mut count = 0_u32;
     let adult = HandShape::adult();
-    let varied = adult.varied(|| {
+    let varied = adult.scaled(|| {
         count += 1;
         1.0 + 1e-3 * f64::from(count)
     });
@@ -71,5 +71,5 @@ fn every_bone_and_radius_has_a_factor_of_its_own() {
 
 #[test]
 fn the_factor_one_changes_nothing() {
-    assert_eq!(HandShape::adult().varied(|| 1.0), HandShape::adult());
+    assert_eq!(HandShape::adult().scaled(|| 1.0), HandShape::adult());
 }

@@ -8,7 +8,7 @@ use phalanx::{
     Workspace,
 };
 use phalanx_camera::Rig;
-use phalanx_hand::{Dof, HandShape, Pose, coupled_pose};
+use phalanx_hand::{Dof, HandShape, Pose, sample_pose};
 use phalanx_refine::PoseFitSettings;
 
 /// Few, so that it takes seconds; the preset asks for more.
@@ -29,7 +29,7 @@ impl SceneSource for AnyMotion<'_> {
 
     fn scene(&self, number: usize) -> Scene {
         let mut random = ItemRng::new(self.seed, number as u64);
-        let mut pose = coupled_pose(|| random.uniform());
+        let mut pose = sample_pose(|| random.uniform());
         pose[Dof::ThetaZ] = random.between(0.0, 90.0_f64.to_radians());
         Augmentation::NONE.scene(self.rig, self.hand, pose, self.seed, number)
     }

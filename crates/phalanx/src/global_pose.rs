@@ -104,8 +104,9 @@ fn length_in_picture(rig: &Rig, hand: &HandShape, pose: &Pose, view: &Sighting<'
     let wrist = view.camera.project(posed.joints[0])?;
     let along = DVec2::from_array(view.hand.direction);
     let is_arm = |solid: &&Primitive| matches!(solid, Primitive::GeneralisedCylinder { .. });
-    let balls = posed.primitives.iter().filter(|solid| !is_arm(solid)).flat_map(Primitive::balls);
-    balls
+    let spheres =
+        posed.primitives.iter().filter(|solid| !is_arm(solid)).flat_map(Primitive::spheres);
+    spheres
         .map(|ball| {
             let depth = view.camera.extrinsics.to_camera(ball.center).z;
             let radius = ball.radius * view.camera.intrinsics.fx / depth;

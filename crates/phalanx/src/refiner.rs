@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 use phalanx_camera::{Camera, Rig};
-use phalanx_hand::{Dof, HandShape, Pose, coupled_pose};
+use phalanx_hand::{Dof, HandShape, Pose, sample_pose};
 use phalanx_refine::{
     BundleAdjustment, BundleFrame, BundleResult, PoseFit, PoseFitSettings, PosePrior,
     SilhouetteObservation,
@@ -80,14 +80,14 @@ impl Refiner {
     }
 
     /// For an estimator's rig and hand; angles go together as in the coupled prior
-    /// ([`phalanx_hand::coupled_pose`]).
+    /// ([`phalanx_hand::sample_pose`]).
     ///
     /// # Errors
     /// As of [`new`](Self::new).
     pub fn for_estimator(estimator: &Estimator, refinement: PoseFitSettings) -> Result<Self> {
         let pose = |item| {
             let mut random = ItemRng::new(0, item);
-            coupled_pose(|| random.uniform())
+            sample_pose(|| random.uniform())
         };
         let postures: Vec<Pose> = (0..POSTURES).map(pose).collect();
         Self::new(estimator.rig(), estimator.hand(), &postures, refinement)

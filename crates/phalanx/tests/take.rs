@@ -30,7 +30,7 @@ fn cameras() -> Vec<Camera> {
 /// Someone's hand: 6 % longer than the mean one, its bones up to 4 % more or less.
 fn hand() -> HandShape {
     let mut random = ItemRng::new(5, 0);
-    HandShape::adult().varied(|| 1.06 * random.between(0.96, 1.04))
+    HandShape::adult().scaled(|| 1.06 * random.between(0.96, 1.04))
 }
 
 /// Fingers that open and close in turn while the hand turns a little.

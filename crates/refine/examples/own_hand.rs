@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rig = Rig::from_toml(include_str!("../fixtures/desk.toml"))?;
     let (mean, rest) = (HandShape::adult(), rig.volume.rest_frame());
     // A smaller hand, its middle and ring fingers longer than such hands' mostly are.
-    let mut own = mean.varied(|| 0.95);
+    let mut own = mean.scaled(|| 0.95);
     for finger in [&mut own.middle, &mut own.ring] {
         finger.lengths_mm = finger.lengths_mm.map(|length| 1.08 * length);
     }

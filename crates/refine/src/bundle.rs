@@ -58,7 +58,7 @@ pub struct BundleResult {
     /// The hand.
     pub hand: HandShape,
     /// How well each of its proportions is known, standard deviations of logarithms: the size's, then
-    /// one for every bone and radius in the order of [`HandShape::varied`].
+    /// one for every bone and radius in the order of [`HandShape::scaled`].
     pub hand_std: Vec<f64>,
     /// The cameras; those whose extrinsics were fitted and that do not move, where they were found to stand, the others as given.
     pub cameras: Vec<Camera>,

@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 use image::GrayImage;
-use phalanx_hand::{Digit, Dof, HandShape, Link, Pose, PosedHand, Primitive};
+use phalanx_hand::{Bone, Digit, Dof, HandShape, Pose, PosedHand, Primitive};
 
 use crate::error::{Error, Result};
 use crate::geometry::correspondence::ViewMatcher;
@@ -287,9 +287,9 @@ enum Part {
 
 /// The primitives that move with some digits, or all others.
 fn primitives(posed: &PosedHand, digits: &[Digit], part: Part) -> Vec<Primitive> {
-    let moves = |link: &Link| matches!(link, Link::Segment(digit, _) if digits.contains(digit));
-    let all = posed.primitives.iter().zip(&posed.links);
-    all.filter(|(_, links)| links.iter().any(moves) == (part == Part::Digits))
+    let moves = |bone: &Bone| matches!(bone, Bone::Segment(digit, _) if digits.contains(digit));
+    let all = posed.primitives.iter().zip(&posed.bones);
+    all.filter(|(_, bones)| bones.iter().any(moves) == (part == Part::Digits))
         .map(|(primitive, _)| *primitive)
         .collect()
 }

@@ -108,7 +108,7 @@ proptest! {
         let (rig, hand) = (rig(), HandShape::adult());
         let rest = rig.volume.rest_frame();
         let mut factors = factors.into_iter().cycle();
-        let own = hand.varied(|| 1.0 + spread * factors.next().unwrap());
+        let own = hand.scaled(|| 1.0 + spread * factors.next().unwrap());
         let evidence = see(&rig, &own, &truth, &rest);
         let trusting = PoseFitSettings::default();
         let with_nuisance = PoseFitSettings { nuisance: Some(NuisanceParameters::default()), ..trusting.clone() };
@@ -190,8 +190,8 @@ fn an_arm_that_reaches_past_a_camera_is_fitted() {
     let rest = rig.volume.rest_frame();
     let truth = hand_bent_by([0.3, 0.5, 0.4, 0.6, 0.3], 0.6);
     let primitives = hand.pose(&truth, &rest).primitives;
-    let depths = primitives.iter().flat_map(|primitive| primitive.balls().to_vec());
-    let nearest = depths.map(|ball| above.extrinsics.to_camera(ball.center).z - ball.radius);
+    let depths = primitives.iter().flat_map(|primitive| primitive.spheres().to_vec());
+    let nearest = depths.map(|sphere| above.extrinsics.to_camera(sphere.center).z - sphere.radius);
     assert!(nearest.fold(f64::INFINITY, f64::min) < 0.0, "the arm ends behind the camera");
     rig.cameras = vec![rig.cameras[1].clone(), above];
     let evidence = see(&rig, &hand, &truth, &rest);
@@ -249,7 +249,7 @@ fn a_strange_hand_is_doubted_and_then_fits() {
     let rig = rig();
     let rest = rig.volume.rest_frame();
     let given = HandShape::adult();
-    let own = given.varied(|| 1.1);
+    let own = given.scaled(|| 1.1);
     let truth = hand_bent_by([0.3, 0.5, 0.4, 0.6, 0.3], 0.6);
     let evidence = see(&rig, &own, &truth, &rest);
     let trusting = PoseFitSettings::default();
@@ -268,7 +268,7 @@ fn a_hand_is_calibrated_from_several_frames() {
     let rig = rig();
     let rest = rig.volume.rest_frame();
     let given = HandShape::adult();
-    let own = given.varied(|| 1.06);
+    let own = given.scaled(|| 1.06);
     let frames: Vec<BundleFrame> = (0..6)
         .map(|k| {
             let bend = 0.15 * f64::from(k);

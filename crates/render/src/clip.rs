@@ -42,13 +42,13 @@ pub(crate) fn trace(
 /// The unit normal, from the camera's centre to a solid, of a plane between the two; `None` where
 /// the solid holds the centre.
 pub(crate) fn plane_between(solid_in_camera: &Primitive) -> Option<DVec3> {
-    let balls = solid_in_camera.balls();
+    let spheres = solid_in_camera.spheres();
     let unsquash = solid_in_camera.squash().inverse();
-    let anchor = balls[0].center;
+    let anchor = spheres[0].center;
     // Undoing the squash moves the centre, and keeps planes between.
     let centre = anchor - unsquash * anchor;
     let gap = |away: DVec3| {
-        let gaps = balls.iter().map(|ball| away.dot(ball.center - centre) - ball.radius);
+        let gaps = spheres.iter().map(|sphere| away.dot(sphere.center - centre) - sphere.radius);
         gaps.fold(f64::INFINITY, f64::min)
     };
     // The widest gap is before the piece of the surface that is nearest.

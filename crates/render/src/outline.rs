@@ -1,13 +1,13 @@
 //! Outlines: what a solid looks like through a pinhole.
 //!
-//! A ball, squashed or not, projects to an ellipse, and a hull of balls to the hull of their
+//! A sphere, squashed or not, projects to an ellipse, and a hull of spheres to the hull of their
 //! ellipses (Hartley and Zisserman, 2004, *Multiple View Geometry*, § 8.3: a quadric's outline
 //! is the conic whose dual is P Q* Pᵀ).
 
 use std::f64::consts::{PI, TAU};
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
-use phalanx_hand::{Ball, Primitive};
+use phalanx_hand::{Primitive, Sphere};
 
 /// A filled ellipse of the normalised image plane: middle + √shape · (unit disc).
 #[derive(Clone, Copy, Default)]
@@ -17,11 +17,11 @@ struct Ellipse {
 }
 
 impl Ellipse {
-    /// The outline of a ball, in the camera's frame, squashed by `squash` about `anchor`; `None`
-    /// where the squashed ball comes to depth `near`.
-    fn of(ball: &Ball, squash: DMat3, anchor: DVec3, near: f64) -> Option<Self> {
-        let c = anchor + squash * (ball.center - anchor);
-        let m = squash * squash.transpose() * (ball.radius * ball.radius);
+    /// The outline of a sphere, in the camera's frame, squashed by `squash` about `anchor`; `None`
+    /// where the squashed sphere comes to depth `near`.
+    fn of(sphere: &Sphere, squash: DMat3, anchor: DVec3, near: f64) -> Option<Self> {
+        let c = anchor + squash * (sphere.center - anchor);
+        let m = squash * squash.transpose() * (sphere.radius * sphere.radius);
         let depth_radius = m.z_axis.z.sqrt();
         let nearest = c.z - depth_radius;
         if nearest <= near || nearest.is_nan() {
@@ -64,13 +64,13 @@ pub(crate) fn trace(
     deviation: f64,
     corners: &mut Vec<DVec2>,
 ) -> Option<()> {
-    let balls = solid_in_camera.balls();
+    let spheres = solid_in_camera.spheres();
     let squash = solid_in_camera.squash();
     let mut ellipses = [Ellipse::default(); 3];
-    for (ellipse, ball) in ellipses.iter_mut().zip(balls) {
-        *ellipse = Ellipse::of(ball, squash, balls[0].center, near)?;
+    for (ellipse, sphere) in ellipses.iter_mut().zip(spheres) {
+        *ellipse = Ellipse::of(sphere, squash, spheres[0].center, near)?;
     }
-    walk(&ellipses[..balls.len()], deviation, corners);
+    walk(&ellipses[..spheres.len()], deviation, corners);
     Some(())
 }
 

@@ -124,15 +124,15 @@ impl Renderer {
     /// ```
     /// use glam::DVec3;
     /// use phalanx_camera::{Camera, Intrinsics};
-    /// use phalanx_hand::{Ball, Primitive};
+    /// use phalanx_hand::{Sphere, Primitive};
     /// use phalanx_render::Renderer;
     ///
     /// let intrinsics = Intrinsics::pinhole(120, 90, 265.0);
     /// let camera = Camera::look_at("top", intrinsics, 700.0 * DVec3::Y, DVec3::ZERO, DVec3::X)?;
-    /// let ball = [Primitive::Sphere(Ball::new(DVec3::ZERO, 20.0))];
+    /// let sphere = [Primitive::Sphere(Sphere::new(DVec3::ZERO, 20.0))];
     /// let mut renderer = Renderer::new(&camera)?;
     ///
-    /// let silhouette = renderer.silhouette(&ball)?;
+    /// let silhouette = renderer.silhouette(&sphere)?;
     /// assert_eq!((silhouette[(60, 45)].0, silhouette[(70, 45)].0), ([255], [0]));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -160,15 +160,15 @@ impl Renderer {
     /// ```
     /// use glam::DVec3;
     /// use phalanx_camera::{Camera, Intrinsics};
-    /// use phalanx_hand::{Ball, Primitive};
+    /// use phalanx_hand::{Sphere, Primitive};
     /// use phalanx_render::{Renderer, Supersampling};
     ///
     /// let intrinsics = Intrinsics::pinhole(120, 90, 265.0);
     /// let camera = Camera::look_at("top", intrinsics, 700.0 * DVec3::Y, DVec3::ZERO, DVec3::X)?;
-    /// let ball = [Primitive::Sphere(Ball::new(DVec3::ZERO, 20.0))];
+    /// let sphere = [Primitive::Sphere(Sphere::new(DVec3::ZERO, 20.0))];
     /// let mut renderer = Renderer::new(&camera)?;
     ///
-    /// let coverage = renderer.coverage(&ball, Supersampling::X8)?;
+    /// let coverage = renderer.coverage(&sphere, Supersampling::X8)?;
     /// let area = coverage.iter().map(|&grey| f64::from(grey) / 255.0).sum::<f64>();
     /// let radius = 265.0 * 20.0 / f64::sqrt(700.0 * 700.0 - 20.0 * 20.0);
     /// assert!((area / (std::f64::consts::PI * radius * radius) - 1.0).abs() < 0.01);
@@ -218,15 +218,15 @@ impl Renderer {
     /// ```
     /// use glam::DVec3;
     /// use phalanx_camera::{Camera, Intrinsics};
-    /// use phalanx_hand::{Ball, Primitive};
+    /// use phalanx_hand::{Sphere, Primitive};
     /// use phalanx_render::Renderer;
     ///
     /// let intrinsics = Intrinsics::pinhole(120, 90, 265.0);
     /// let camera = Camera::look_at("top", intrinsics, 700.0 * DVec3::Y, DVec3::ZERO, DVec3::X)?;
-    /// let ball = [Primitive::Sphere(Ball::new(DVec3::ZERO, 20.0))];
+    /// let sphere = [Primitive::Sphere(Sphere::new(DVec3::ZERO, 20.0))];
     /// let mut renderer = Renderer::new(&camera)?;
     ///
-    /// let depth = renderer.depth(&ball)?;
+    /// let depth = renderer.depth(&sphere)?;
     /// assert!((depth.depths[45 * 120 + 60] - 680.0).abs() < 0.1);
     /// assert_eq!(depth.depths[0], f32::INFINITY);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -248,18 +248,18 @@ impl Renderer {
     /// ```
     /// use glam::DVec3;
     /// use phalanx_camera::{Camera, Intrinsics};
-    /// use phalanx_hand::{Ball, Primitive};
+    /// use phalanx_hand::{Sphere, Primitive};
     /// use phalanx_render::{Appearance, Renderer};
     ///
     /// let intrinsics = Intrinsics::pinhole(120, 90, 265.0);
     /// let camera = Camera::look_at("top", intrinsics, 700.0 * DVec3::Y, DVec3::ZERO, DVec3::X)?;
-    /// let ball = [Primitive::Sphere(Ball::new(DVec3::ZERO, 20.0))];
+    /// let sphere = [Primitive::Sphere(Sphere::new(DVec3::ZERO, 20.0))];
     /// let mut renderer = Renderer::new(&camera)?;
     ///
     /// let appearance = Appearance::default();
-    /// let picture = renderer.shade(&ball, &appearance, 1)?;
-    /// assert_eq!(renderer.shade(&ball, &appearance, 1)?, picture);
-    /// assert_ne!(renderer.shade(&ball, &appearance, 2)?, picture); // other noise
+    /// let picture = renderer.shade(&sphere, &appearance, 1)?;
+    /// assert_eq!(renderer.shade(&sphere, &appearance, 1)?, picture);
+    /// assert_ne!(renderer.shade(&sphere, &appearance, 2)?, picture); // other noise
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn shade(
@@ -377,11 +377,11 @@ fn centre(x: u32, y: u32) -> DVec2 {
 fn check(primitive: &Primitive) -> std::result::Result<(), &'static str> {
     /// Lengths, mm, whose fourth powers are far from overflowing.
     const FARTHEST: f64 = 1e9;
-    for ball in primitive.balls() {
-        if !ball.center.abs().cmple(DVec3::splat(FARTHEST)).all() {
+    for sphere in primitive.spheres() {
+        if !sphere.center.abs().cmple(DVec3::splat(FARTHEST)).all() {
             return Err("center");
         }
-        if !(ball.radius > 0.0 && ball.radius <= FARTHEST) {
+        if !(sphere.radius > 0.0 && sphere.radius <= FARTHEST) {
             return Err("radius");
         }
     }

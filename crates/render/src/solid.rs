@@ -15,7 +15,7 @@ struct Window {
     most: DVec2,
 }
 
-/// A hull of balls, squashed.
+/// A hull of spheres, squashed.
 #[derive(Debug, Clone)]
 struct Solid {
     /// Which surfaces are the hull's.
@@ -54,7 +54,7 @@ impl Scene {
                 most: outline.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max) + margin,
             },
             unsquash: solid.squash().inverse(),
-            anchor: solid.balls()[0].center,
+            anchor: solid.spheres()[0].center,
             holds_camera: plane_between(solid).is_none(),
         });
     }

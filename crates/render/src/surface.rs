@@ -1,12 +1,12 @@
-//! Where a ray enters a hull of balls, in closed form.
+//! Where a ray enters a hull of spheres, in closed form.
 //!
-//! The hull of up to three balls is bounded by pieces of the balls, of the cones that touch two
+//! The hull of up to three spheres is bounded by pieces of the spheres, of the cones that touch two
 //! of them and of the planes that touch all three. All of these surfaces lie within the hull,
 //! so the first that a ray from outside enters is where it enters the hull. There are no cracks:
-//! balls and cones go on underneath what they touch.
+//! spheres and cones go on underneath what they touch.
 
 use glam::{DMat2, DVec2, DVec3};
-use phalanx_hand::{Ball, Primitive};
+use phalanx_hand::{Primitive, Sphere};
 
 /// A ray; distances along it are in units of its direction's length.
 #[derive(Clone, Copy)]
@@ -26,31 +26,31 @@ pub(crate) struct Hit {
 
 #[derive(Debug, Clone)]
 pub(crate) enum Surface {
-    Sphere(Ball),
+    Sphere(Sphere),
     Cone(Cone),
     Face(Face),
 }
 
 impl Surface {
-    /// All surfaces of the hull of a solid's balls, as they are before it is squashed.
+    /// All surfaces of the hull of a solid's spheres, as they are before it is squashed.
     pub(crate) fn of(solid: &Primitive) -> impl Iterator<Item = Self> {
-        let balls = solid.balls();
-        let spheres = balls.iter().copied().map(Self::Sphere);
-        let pairs = balls.iter().enumerate().flat_map(|(index, a)| {
-            balls[index + 1..].iter().filter_map(move |b| Cone::between(a, b))
+        let spheres = solid.spheres();
+        let round = spheres.iter().copied().map(Self::Sphere);
+        let pairs = spheres.iter().enumerate().flat_map(|(index, a)| {
+            spheres[index + 1..].iter().filter_map(move |b| Cone::between(a, b))
         });
         let faces = match solid {
-            Primitive::Wedge(balls) => Face::of(balls),
+            Primitive::Wedge(spheres) => Face::of(spheres),
             _ => None,
         };
         let faces = faces.into_iter().flatten().map(Self::Face);
-        spheres.chain(pairs.map(Self::Cone)).chain(faces)
+        round.chain(pairs.map(Self::Cone)).chain(faces)
     }
 
     /// The outward unit normal of the plane that touches the surface and faces a point best.
     pub(crate) fn facing(&self, point: DVec3) -> DVec3 {
         match self {
-            Self::Sphere(ball) => (point - ball.center).normalize_or(DVec3::Z),
+            Self::Sphere(sphere) => (point - sphere.center).normalize_or(DVec3::Z),
             Self::Cone(cone) => cone.facing(point),
             Self::Face(face) => face.normal,
         }
@@ -58,28 +58,28 @@ impl Surface {
 
     pub(crate) fn enter(&self, ray: &Ray) -> Option<Hit> {
         match self {
-            Self::Sphere(ball) => enter_sphere(ball, ray),
+            Self::Sphere(sphere) => enter_sphere(sphere, ray),
             Self::Cone(cone) => cone.enter(ray),
             Self::Face(face) => face.enter(ray),
         }
     }
 }
 
-fn enter_sphere(ball: &Ball, ray: &Ray) -> Option<Hit> {
-    let from_center = ray.origin - ball.center;
+fn enter_sphere(sphere: &Sphere, ray: &Ray) -> Option<Hit> {
+    let from_center = ray.origin - sphere.center;
     let distance = entering_root(
         ray.direction.length_squared(),
         ray.direction.dot(from_center),
-        from_center.length_squared() - ball.radius * ball.radius,
+        from_center.length_squared() - sphere.radius * sphere.radius,
     )?;
     Some(Hit { distance, normal: from_center + ray.direction * distance })
 }
 
-/// The surface that touches two balls around: a cone between its circles of contact.
+/// The surface that touches two spheres around: a cone between its circles of contact.
 #[derive(Debug, Clone)]
 pub(crate) struct Cone {
     center: DVec3,
-    /// Unit vector towards the second ball.
+    /// Unit vector towards the second sphere.
     axis: DVec3,
     radius: f64,
     /// The component of every normal along the axis.
@@ -90,8 +90,8 @@ pub(crate) struct Cone {
 }
 
 impl Cone {
-    /// `None` where one ball holds the other.
-    pub(crate) fn between(a: &Ball, b: &Ball) -> Option<Self> {
+    /// `None` where one sphere holds the other.
+    pub(crate) fn between(a: &Sphere, b: &Sphere) -> Option<Self> {
         let apart = b.center - a.center;
         let length = apart.length();
         if length <= (a.radius - b.radius).abs() {
@@ -136,7 +136,7 @@ impl Cone {
     }
 }
 
-/// A triangle on a plane that touches three balls.
+/// A triangle on a plane that touches three spheres.
 #[derive(Debug, Clone)]
 pub(crate) struct Face {
     corner: DVec3,
@@ -146,9 +146,9 @@ pub(crate) struct Face {
 }
 
 impl Face {
-    /// The two faces of three balls; `None` where no plane touches all three from one side:
-    /// one ball lies in the hull of the others, or all are in line.
-    pub(crate) fn of([a, b, c]: &[Ball; 3]) -> Option<[Self; 2]> {
+    /// The two faces of three spheres; `None` where no plane touches all three from one side:
+    /// one sphere lies in the hull of the others, or all are in line.
+    pub(crate) fn of([a, b, c]: &[Sphere; 3]) -> Option<[Self; 2]> {
         let (ab, ac) = (b.center - a.center, c.center - a.center);
         let across = ab.cross(ac);
         // A unit normal n has n·ab = ra − rb and n·ac = ra − rc; its part in the plane of the

@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
 use super::{Placement, filled_poses, frame_rate};
 use crate::Result;
-use crate::model::{BONE_NAMES, BONES, Bone, Skeleton};
+use crate::model::{BONE_NAMES, BONES, Skeleton, SkeletonBone};
 use crate::take::Take;
 
 /// A bone's channels. The turns compose in this order: R = R_Z R_X R_Y.
@@ -53,7 +53,7 @@ fn push_bone(lines: &mut Vec<String>, skeleton: &Skeleton, bone: usize, depth: u
         0 => ("ROOT", "6 Xposition Yposition Zposition"),
         _ => ("JOINT", "3"),
     };
-    let Bone { offset, tip, .. } = &skeleton.bones[bone];
+    let SkeletonBone { offset, tip, .. } = &skeleton.bones[bone];
     lines.push(format!("{indent}{kind} {}", BONE_NAMES[bone]));
     lines.push(format!("{indent}{{"));
     lines.push(format!("{indent}\tOFFSET {}", cells(*offset * scale)));

@@ -1,7 +1,7 @@
 //! The hand as a tree of bones, each turning on its parent.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use phalanx_hand::{Digit, Dof, HandShape, Link, Pose, Side};
+use phalanx_hand::{Bone, Digit, Dof, HandShape, Pose, Side};
 
 /// How many bones there are: the forearm, the palm and three for each digit.
 pub(crate) const BONES: usize = 17;
@@ -31,12 +31,12 @@ pub(crate) const BONE_NAMES: [&str; BONES] = [
 /// of the hand at rest.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Skeleton {
-    pub(crate) bones: [Bone; BONES],
+    pub(crate) bones: [SkeletonBone; BONES],
 }
 
 /// A bone: where it begins on its parent, and what turns it.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Bone {
+pub(crate) struct SkeletonBone {
     /// None of the root.
     pub(crate) parent: Option<usize>,
     /// The beginning in the parent's frame, mm.
@@ -51,8 +51,8 @@ pub(crate) struct Bone {
 
 impl Skeleton {
     pub(crate) fn new(shape: &HandShape) -> Self {
-        let root = Bone::new(None, DVec3::ZERO, DQuat::IDENTITY);
-        let palm = Bone::new(Some(0), DVec3::ZERO, DQuat::IDENTITY);
+        let root = SkeletonBone::new(None, DVec3::ZERO, DQuat::IDENTITY);
+        let palm = SkeletonBone::new(Some(0), DVec3::ZERO, DQuat::IDENTITY);
         let mut bones = vec![
             root.turned(DVec3::X, Dof::ThetaX)
                 .turned(DVec3::Y, Dof::ThetaY)
@@ -69,7 +69,7 @@ impl Skeleton {
             push_digit(&mut bones, digit, finger.base_mm, rest, finger.lengths_mm);
         }
         if shape.side == Side::Left {
-            bones.iter_mut().for_each(Bone::mirror);
+            bones.iter_mut().for_each(SkeletonBone::mirror);
         }
         let mut bones = bones.into_iter();
         Self { bones: std::array::from_fn(|_| bones.next().expect("two bones and five digits")) }
@@ -93,23 +93,29 @@ impl Skeleton {
 }
 
 /// Which bone moves as a part of the hand does.
-pub(crate) fn bone_of(link: Link) -> usize {
-    match link {
-        Link::Forearm => 0,
-        Link::Palm => 1,
-        Link::Segment(digit, segment) => 2 + 3 * (digit as usize) + segment,
+pub(crate) fn bone_of(bone: Bone) -> usize {
+    match bone {
+        Bone::Forearm => 0,
+        Bone::Palm => 1,
+        Bone::Segment(digit, segment) => 2 + 3 * (digit as usize) + segment,
     }
 }
 
-fn push_digit(bones: &mut Vec<Bone>, digit: Digit, base: DVec3, rest: DQuat, lengths: [f64; 3]) {
+fn push_digit(
+    bones: &mut Vec<SkeletonBone>,
+    digit: Digit,
+    base: DVec3,
+    rest: DQuat,
+    lengths: [f64; 3],
+) {
     let [abduction, flexions @ ..] = digit.dofs();
     // Away from the middle finger is towards -X for the ring and the little finger.
     let outwards = if matches!(digit, Digit::Ring | Digit::Little) { -1.0 } else { 1.0 };
     let first = bones.len();
     for (segment, flexion) in flexions.into_iter().enumerate() {
         let bone = match segment {
-            0 => Bone::new(Some(1), base, rest).turned(DVec3::Y * outwards, abduction),
-            _ => Bone::new(
+            0 => SkeletonBone::new(Some(1), base, rest).turned(DVec3::Y * outwards, abduction),
+            _ => SkeletonBone::new(
                 Some(first + segment - 1),
                 DVec3::Z * lengths[segment - 1],
                 DQuat::IDENTITY,
@@ -120,7 +126,7 @@ fn push_digit(bones: &mut Vec<Bone>, digit: Digit, base: DVec3, rest: DQuat, len
     bones[first + 2].tip = Some(DVec3::Z * lengths[2]);
 }
 
-impl Bone {
+impl SkeletonBone {
     fn new(parent: Option<usize>, offset: DVec3, rest: DQuat) -> Self {
         Self { parent, offset, rest, turns: Vec::new(), tip: None }
     }

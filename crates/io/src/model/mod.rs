@@ -3,5 +3,5 @@
 mod bones;
 mod skin;
 
-pub(crate) use bones::{BONE_NAMES, BONES, Bone, Skeleton};
+pub(crate) use bones::{BONE_NAMES, BONES, Skeleton, SkeletonBone};
 pub(crate) use skin::Skin;

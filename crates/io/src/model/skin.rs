@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine3, DMat3, DVec3};
-use phalanx_hand::{Ball, ForearmShape, HandShape, Link, Pose, Primitive};
+use phalanx_hand::{Bone, ForearmShape, HandShape, Pose, Primitive, Sphere};
 
 use super::bones::bone_of;
 
@@ -34,31 +34,31 @@ impl Skin {
         let posed = shape.pose(&Pose::REST, &DAffine3::IDENTITY);
         let mut skin = Self::default();
         let mut drawn = BTreeSet::new();
-        for (solid, links) in posed.primitives.iter().zip(&posed.links) {
-            let balls = solid.balls();
-            for (a, b) in (0..balls.len()).flat_map(|b| (0..b).map(move |a| (a, b))) {
+        for (solid, bones) in posed.primitives.iter().zip(&posed.bones) {
+            let spheres = solid.spheres();
+            for (a, b) in (0..spheres.len()).flat_map(|b| (0..b).map(move |a| (a, b))) {
                 // Neighbouring wedges share an edge.
-                let bits = |k: usize| balls[k].center.to_array().map(f64::to_bits);
+                let bits = |k: usize| spheres[k].center.to_array().map(f64::to_bits);
                 if drawn.insert((bits(a).min(bits(b)), bits(a).max(bits(b)))) {
-                    skin.push_round_cone([(balls[a], links[a]), (balls[b], links[b])], solid);
+                    skin.push_round_cone([(spheres[a], bones[a]), (spheres[b], bones[b])], solid);
                 }
             }
-            if let Primitive::Wedge(balls) = solid {
-                skin.push_faces(balls, *links);
+            if let Primitive::Wedge(spheres) = solid {
+                skin.push_faces(spheres, *bones);
             }
         }
         skin
     }
 
-    /// The hull of two balls, squashed as the solid is.
+    /// The hull of two spheres, squashed as the solid is.
     fn push_round_cone(
         &mut self,
-        [(a, a_link), (b, b_link)]: [(Ball, Link); 2],
+        [(a, a_bone), (b, b_bone)]: [(Sphere, Bone); 2],
         solid: &Primitive,
     ) {
         let between = b.center - a.center;
         let ratio = (a.radius - b.radius) / between.length();
-        // A ball inside the other adds nothing, and NaN passes neither test.
+        // A sphere inside the other adds nothing, and NaN passes neither test.
         if !(-1.0..=1.0).contains(&ratio) {
             return;
         }
@@ -69,17 +69,17 @@ impl Skin {
         let squash = solid.squash();
         let stretch = squash.inverse();
         for ring in 0..2 * RINGS {
-            let (ball, link, angle) = if ring < RINGS {
-                (a, a_link, PI + (seam - PI) * part(ring))
+            let (sphere, bone, angle) = if ring < RINGS {
+                (a, a_bone, PI + (seam - PI) * part(ring))
             } else {
-                (b, b_link, seam * (1.0 - part(ring - RINGS)))
+                (b, b_bone, seam * (1.0 - part(ring - RINGS)))
             };
             for k in 0..AROUND {
                 let turn = TAU * k as f64 / AROUND as f64;
                 let outwards =
                     along * angle.cos() + (side * turn.cos() + up * turn.sin()) * angle.sin();
-                let at = ball.center + outwards * ball.radius - a.center;
-                self.corner(a.center + squash * at, stretch * outwards, link);
+                let at = sphere.center + outwards * sphere.radius - a.center;
+                self.corner(a.center + squash * at, stretch * outwards, bone);
             }
         }
         self.push_rings(first);
@@ -101,9 +101,9 @@ impl Skin {
         }
     }
 
-    /// The two flat faces of a wedge: the planes that touch its three balls.
-    fn push_faces(&mut self, balls: &[Ball; 3], links: [Link; 3]) {
-        let [p, q, r] = balls;
+    /// The two flat faces of a wedge: the planes that touch its three spheres.
+    fn push_faces(&mut self, spheres: &[Sphere; 3], bones: [Bone; 3]) {
+        let [p, q, r] = spheres;
         let (u, v) = (q.center - p.center, r.center - p.center);
         let across = u.cross(v);
         let Some(axis) = across.try_normalize() else { return };
@@ -111,25 +111,25 @@ impl Skin {
         let rows = DMat3::from_cols(u, v, axis).transpose();
         let within = rows.inverse() * DVec3::new(p.radius - q.radius, p.radius - r.radius, 0.0);
         let height = 1.0 - within.length_squared();
-        // One ball within the hull of the others, or NaN: no plane touches all three.
+        // One sphere within the hull of the others, or NaN: no plane touches all three.
         if height.is_nan() || height <= 0.0 {
             return;
         }
         for side in [1.0, -1.0] {
             let outwards = within + axis * (side * height.sqrt());
             let first = self.positions.len() as u16;
-            for (ball, link) in balls.iter().zip(links) {
-                self.corner(ball.center + outwards * ball.radius, outwards, link);
+            for (sphere, bone) in spheres.iter().zip(bones) {
+                self.corner(sphere.center + outwards * sphere.radius, outwards, bone);
             }
             let order = if side > 0.0 { [0, 1, 2] } else { [0, 2, 1] };
             self.triangles.push(order.map(|k| first + k));
         }
     }
 
-    fn corner(&mut self, at: DVec3, outwards: DVec3, link: Link) {
+    fn corner(&mut self, at: DVec3, outwards: DVec3, bone: Bone) {
         self.positions.push(at);
         self.normals.push(outwards.normalize());
-        self.bones.push(bone_of(link) as u8);
+        self.bones.push(bone_of(bone) as u8);
     }
 }
 

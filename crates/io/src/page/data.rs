@@ -126,7 +126,7 @@ fn vectors(values: &[DVec3]) -> String {
 }
 
 fn skeleton(skeleton: &Skeleton) -> Value {
-    let bone = |bone: &crate::model::Bone| {
+    let bone = |bone: &crate::model::SkeletonBone| {
         let turns =
             bone.turns.iter().map(|(axis, dof)| json!({ "axis": axis, "dof": dof.index() }));
         json!({

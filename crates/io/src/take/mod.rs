@@ -14,7 +14,7 @@ mod stored_zip;
 mod validate;
 
 use glam::{DAffine3, DVec3};
-use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Link, Pose, PosedHand};
+use phalanx_hand::{Bone, Digit, Dof, HandShape, JOINTS, Pose, PosedHand};
 
 use crate::Error;
 
@@ -140,10 +140,10 @@ impl TakeHeader {
     pub fn estimate(&self, pose: Pose, std: [Option<f64>; Dof::COUNT]) -> PoseEstimate {
         let posed = self.posed(&pose);
         let joint_std = std.iter().any(Option::is_some).then(|| {
-            let motions = self.hand.motions(&pose, &self.world_from_hand);
+            let twists = self.hand.twists(&pose, &self.world_from_hand);
             std::array::from_fn(|joint| {
-                let moved = joint_link(joint).dofs().filter_map(|dof| {
-                    let velocity = motions.of(dof).velocity(posed.joints[joint]);
+                let moved = joint_bone(joint).dofs().filter_map(|dof| {
+                    let velocity = twists.of(dof).velocity(posed.joints[joint]);
                     std[dof.index()].map(|std| (velocity * std).powf(2.0))
                 });
                 moved.sum::<DVec3>().powf(0.5)
@@ -172,10 +172,10 @@ impl TakeFrame {
 }
 
 /// The part of the hand that a joint moves with.
-fn joint_link(joint: usize) -> Link {
+fn joint_bone(joint: usize) -> Bone {
     match joint.checked_sub(1).map(|k| (Digit::ALL[k / 4], k % 4)) {
-        None | Some((_, 0)) => Link::Palm,
-        Some((digit, segment)) => Link::Segment(digit, segment - 1),
+        None | Some((_, 0)) => Bone::Palm,
+        Some((digit, segment)) => Bone::Segment(digit, segment - 1),
     }
 }
 

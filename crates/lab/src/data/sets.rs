@@ -6,7 +6,7 @@ use phalanx::{
     ShapeVariation, Trainer,
 };
 use phalanx_camera::Rig;
-use phalanx_hand::{Dof, HandShape, Pose, coupled_pose, uncoupled_pose};
+use phalanx_hand::{Dof, HandShape, Pose, sample_pose, sample_pose_independent};
 
 use crate::data::data_set::THETA_Z_DEG;
 use crate::data::trajectories::complex_take;
@@ -250,11 +250,11 @@ impl Test {
         let poses = match self {
             Self::ThetaBetween | Self::All => takes(&BETWEEN_DEG),
             Self::Random => {
-                independent(TEST_SAMPLES, TEST_POSES, |random| coupled_pose(|| random.uniform()))
+                independent(TEST_SAMPLES, TEST_POSES, |random| sample_pose(|| random.uniform()))
             }
-            Self::Uncoupled => {
-                independent(TEST_SAMPLES, TEST_POSES, |random| uncoupled_pose(|| random.uniform()))
-            }
+            Self::Uncoupled => independent(TEST_SAMPLES, TEST_POSES, |random| {
+                sample_pose_independent(|| random.uniform())
+            }),
             Self::Placed => {
                 let anywhere = SceneSampler::new(PoseSource::Anywhere);
                 let sampler = SceneSampler { pose_seed: TEST_POSES, ..anywhere };

@@ -4,7 +4,7 @@
 //! about two thirds, the thumb's outer joints bend together, abduction narrows as the knuckle
 //! bends) and reached along a minimum-jerk path (Flash and Hogan 1985), as people's fingers do.
 
-use phalanx_hand::{Digit, Dof, Pose, coupled_posture};
+use phalanx_hand::{Digit, Dof, Pose, sample_posture};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -124,7 +124,7 @@ impl Movement {
 
 /// A posture of one digit from the coupled prior, degrees.
 fn random_posture(digit: Digit, random: &mut Pcg64Mcg) -> Posture {
-    coupled_posture(digit, || uniform(random)).map(f64::to_degrees)
+    sample_posture(digit, || uniform(random)).map(f64::to_degrees)
 }
 
 fn set(pose: &mut Pose, digit: Digit, joints: Posture) {

@@ -9,7 +9,7 @@ use glam::{DAffine3, DQuat, DVec2, DVec3};
 use image::GrayImage;
 use phalanx::ItemRng;
 use phalanx_camera::{Camera, Intrinsics};
-use phalanx_hand::{Dof, HandShape, coupled_pose};
+use phalanx_hand::{Dof, HandShape, sample_pose};
 use phalanx_render::Renderer;
 use phalanx_segmentation::{Cleanup, HandDetector, WristModel, WristTrainer};
 
@@ -84,8 +84,8 @@ fn test(hand: &HandShape, model: &WristModel) -> Result<String> {
 /// anywhere; nothing where its fingertips are not in the picture.
 fn sample(hand: &HandShape, number: u64) -> Result<Option<Sample>> {
     let mut random = ItemRng::new(SEED, number);
-    let hand = hand.varied(|| random.between(1.0 - SPREAD, 1.0 + SPREAD));
-    let mut pose = coupled_pose(|| random.uniform());
+    let hand = hand.scaled(|| random.between(1.0 - SPREAD, 1.0 + SPREAD));
+    let mut pose = sample_pose(|| random.uniform());
     pose[Dof::WristFlexion] = random.between(-30.0, 30.0).to_radians();
     pose[Dof::WristDeviation] = random.between(-15.0, 10.0).to_radians();
     let roll = DQuat::from_rotation_z(random.between(0.0, std::f64::consts::TAU));

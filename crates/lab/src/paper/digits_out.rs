@@ -242,7 +242,7 @@ impl Gallery {
 fn scenes(rig: &Rig, hand: &HandShape, out: &[Out], seed: u64) -> SceneList {
     let scene = |(number, out): (usize, &Out)| {
         let mut random = ItemRng::new(seed, number as u64);
-        let hand = hand.varied(|| random.between(0.9, 1.1));
+        let hand = hand.scaled(|| random.between(0.9, 1.1));
         let mut pose = with_digits_out(*out, &mut random);
         pose[Dof::ThetaX] = random.between(-15.0, 15.0).to_radians();
         pose[Dof::ThetaZ] = random.between(-25.0, 25.0).to_radians();

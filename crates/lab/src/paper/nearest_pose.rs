@@ -88,7 +88,7 @@ impl Subject {
             pose[dof] = random.between(-15.0, 15.0);
         }
         let scale = random.between(0.85, 1.15);
-        let hand = lab.hand.varied(|| scale);
+        let hand = lab.hand.scaled(|| scale);
         let damage = Augmentation {
             hands: ShapeVariation::Each { spread: 0.1 },
             camera_roll: 20_f64.to_radians(),

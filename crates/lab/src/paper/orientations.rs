@@ -119,7 +119,7 @@ fn queries(rig: &Rig, hand: &HandShape) -> Vec<Scene> {
         NAMED.iter().enumerate().flat_map(move |(class, posture)| {
             (0..HANDS).map(move |number| {
                 let mut random = ItemRng::new(2, (class * HANDS + number) as u64);
-                let hand = hand.varied(|| random.between(1.0 - SPREAD, 1.0 + SPREAD));
+                let hand = hand.scaled(|| random.between(1.0 - SPREAD, 1.0 + SPREAD));
                 let pose = posture.held(HELD_WITHIN_DEG, &mut random);
                 let mut scene = Scene::nominal(rig, &hand, pose);
                 let turn = rolled(&rig.cameras[0], f64::from(roll).to_radians());

@@ -8,7 +8,7 @@ use super::consensus::DISAGREEMENT;
 use super::observation::{self, Sight};
 use super::starts;
 use crate::Result;
-use crate::localize::{Ball, HandCrop, Placement};
+use crate::localize::{BoundingSphere, HandCrop, Placement};
 
 /// Palm directions about the forearm that are tried where none is known: 45° apart, half of which steps
 /// make up for.
@@ -146,7 +146,7 @@ impl FrameFitter<'_> {
     }
 
     /// The ball that holds a hand with its wrist and arm as a frame has them.
-    fn ball(&self, frame: &DAffine3) -> Ball {
+    fn ball(&self, frame: &DAffine3) -> BoundingSphere {
         let length = observation::length_mm(self.hand);
         observation::ball_of(frame.translation, frame.matrix3.z_axis, length)
     }

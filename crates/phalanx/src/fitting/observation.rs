@@ -6,7 +6,7 @@ use phalanx_camera::Camera;
 use phalanx_hand::{HandShape, Pose};
 use phalanx_segmentation::{HandDetection, HandDetector};
 
-use crate::localize::{Arm, Ball, Detections, HandCrop, Placement, associate};
+use crate::localize::{Arm, BoundingSphere, Detections, HandCrop, Placement, associate};
 use crate::{Error, Result};
 
 /// Placements of a frame that are tried.
@@ -22,8 +22,8 @@ const REACH: f64 = 0.75;
 const KNOWN_ARM: f64 = 0.2;
 
 /// The ball that holds a hand of some length.
-pub(super) fn ball_of(wrist: DVec3, arm: DVec3, length: f64) -> Ball {
-    Ball { middle: wrist + arm * (MIDDLE * length), radius: REACH * length }
+pub(super) fn ball_of(wrist: DVec3, arm: DVec3, length: f64) -> BoundingSphere {
+    BoundingSphere { middle: wrist + arm * (MIDDLE * length), radius: REACH * length }
 }
 
 /// The arm of a hand of some length as far as it is known.
@@ -84,7 +84,7 @@ impl Sight {
 
     /// What each view sees of a ball in space; `None` of a view without anything like a hand, or for
     /// which the ball is not before the camera.
-    pub(super) fn crops(&self, ball: Ball) -> Vec<Option<HandCrop>> {
+    pub(super) fn crops(&self, ball: BoundingSphere) -> Vec<Option<HandCrop>> {
         let views = self.views.iter().zip(&self.detections);
         views.map(|(view, detections)| view.crop(detections, ball)).collect()
     }
@@ -92,7 +92,7 @@ impl Sight {
 
 impl View {
     /// What is seen of the ball: the component that fills most of it, and those that lie mostly within.
-    fn crop(&self, detections: &Detections, ball: Ball) -> Option<HandCrop> {
+    fn crop(&self, detections: &Detections, ball: BoundingSphere) -> Option<HandCrop> {
         if self.is_empty {
             return None;
         }

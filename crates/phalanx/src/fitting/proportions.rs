@@ -27,7 +27,7 @@ impl KnownHand {
     /// A hand of which no more is known than that it is somebody's.
     pub(super) fn anyone(shape: &HandShape) -> Self {
         let mut std = vec![POPULATION.size];
-        let _unchanged = shape.varied(|| {
+        let _unchanged = shape.scaled(|| {
             std.push(POPULATION.each);
             1.0
         });

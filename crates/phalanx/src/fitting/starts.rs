@@ -1,7 +1,7 @@
 //! Where fits begin.
 
 use glam::{DAffine3, DMat3, DVec3};
-use phalanx_hand::{Digit, Dof, HandShape, Pose, Side, coupled_pose};
+use phalanx_hand::{Digit, Dof, HandShape, Pose, Side, sample_pose};
 use phalanx_refine::PosePrior;
 
 use crate::localize::Placement;
@@ -23,7 +23,7 @@ const RANGE: f64 = 6.0;
 pub(super) fn pose_prior() -> Result<PosePrior> {
     let pose = |item| {
         let mut random = ItemRng::new(0, item);
-        coupled_pose(|| random.uniform())
+        sample_pose(|| random.uniform())
     };
     let postures: Vec<Pose> = (0..POSTURES).map(pose).collect();
     let mut deviations = [f64::INFINITY; Dof::COUNT];

@@ -18,7 +18,7 @@ const NEAREST: f64 = 1.05;
 
 /// A ball that a hand fits into.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ball {
+pub struct BoundingSphere {
     /// Its middle, mm in the world.
     pub middle: DVec3,
     /// Its radius, mm.
@@ -44,7 +44,7 @@ impl HandCrop {
     ///
     /// # Errors
     /// A ball that is not before the camera.
-    pub fn onto(camera: &Camera, mask: &GrayImage, ball: Ball) -> Result<Self> {
+    pub fn onto(camera: &Camera, mask: &GrayImage, ball: BoundingSphere) -> Result<Self> {
         let offset = ball.middle - camera.centre();
         let in_camera = camera.extrinsics.to_camera(ball.middle);
         if in_camera.z <= 0.0 {

@@ -7,5 +7,5 @@ mod detect;
 
 pub use arm::Arm;
 pub use associate::{Placement, associate};
-pub use crop::{Ball, HandCrop};
+pub use crop::{BoundingSphere, HandCrop};
 pub use detect::Detections;

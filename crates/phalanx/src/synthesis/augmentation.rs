@@ -120,7 +120,7 @@ impl Augmentation {
         // scenes' own.
         let varied = |hand: usize, spread: f64| {
             let mut random = ItemRng::new(!seed, hand as u64);
-            given.varied(|| random.between(1.0 - spread, 1.0 + spread))
+            given.scaled(|| random.between(1.0 - spread, 1.0 + spread))
         };
         match self.hands {
             ShapeVariation::Given => given.clone(),

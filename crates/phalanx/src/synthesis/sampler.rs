@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use phalanx_camera::Rig;
-use phalanx_hand::{Dof, HandShape, Pose, coupled_pose};
+use phalanx_hand::{Dof, HandShape, Pose, sample_pose};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
@@ -21,7 +21,7 @@ const WRIST_DEG: [(Dof, [f64; 2]); 2] =
     [(Dof::WristFlexion, [-30.0, 50.0]), (Dof::WristDeviation, [-25.0, 15.0])];
 
 /// Where the poses of random scenes come from. θ_Z, the turn about the forearm, is uniform in
-/// 0° … 90°; the fingers of all but recorded poses follow [`coupled_pose`].
+/// 0° … 90°; the fingers of all but recorded poses follow [`sample_pose`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum PoseSource {
@@ -145,7 +145,7 @@ impl SampledScenes<'_> {
     pub fn pose(&self, number: usize) -> Pose {
         let mut random = ItemRng::new(self.sampler.pose_seed, number as u64);
         let mut pose = match &self.sampler.poses {
-            PoseSource::Centred => coupled_pose(|| random.uniform()),
+            PoseSource::Centred => sample_pose(|| random.uniform()),
             PoseSource::Anywhere => self.placed(&mut random),
             PoseSource::AnywhereBent => {
                 let mut pose = self.placed(&mut random);
@@ -171,7 +171,7 @@ impl SampledScenes<'_> {
 
     /// A coupled pose with its wrist anywhere in the working volume, its arm leaning.
     fn placed(&self, random: &mut ItemRng) -> Pose {
-        let mut pose = coupled_pose(|| random.uniform());
+        let mut pose = sample_pose(|| random.uniform());
         let size_mm = self.rig.volume.size;
         for (dof, size) in [Dof::TX, Dof::TY, Dof::TZ].into_iter().zip(size_mm.to_array()) {
             pose[dof] = random.between(-0.5 * size, 0.5 * size);

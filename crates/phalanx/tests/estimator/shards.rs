@@ -5,7 +5,7 @@ use phalanx::{
     Scene, SceneSource, SceneSubset, Shard, Trainer, Training,
 };
 use phalanx_camera::Rig;
-use phalanx_hand::{Dof, HandShape, coupled_pose};
+use phalanx_hand::{Dof, HandShape, sample_pose};
 use phalanx_rvm::{
     AgarwalTriggs, Bandwidth, Kernel, KernelRidge, NystromRidge, Regularisation, Stop,
     TwoStageSelection,
@@ -44,7 +44,7 @@ impl SceneSource for Random {
 
     fn scene(&self, number: usize) -> Scene {
         let mut random = phalanx::ItemRng::new(1, number as u64);
-        let pose = coupled_pose(|| random.uniform());
+        let pose = sample_pose(|| random.uniform());
         Augmentation::NONE.scene(&self.rig, &self.hand, pose, 2, number)
     }
 }

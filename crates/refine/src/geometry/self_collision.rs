@@ -1,7 +1,7 @@
 //! Digits that would be in the same place.
 
 use glam::DVec3;
-use phalanx_hand::{Ball, Link, PosedHand, Primitive};
+use phalanx_hand::{Bone, PosedHand, Primitive, Sphere};
 
 /// How deep digits may press into each other at no cost, mm, about half a finger: flesh gives way,
 /// and recorded and drawn motion is not so exact that fingers never meet.
@@ -15,7 +15,7 @@ const DEVIATION: f64 = 3.0;
 pub(crate) struct Penetration {
     /// The two primitives, by their numbers.
     pub(crate) primitives: [usize; 2],
-    /// Where on each axis they are deepest in each other, 0 at the first ball and 1 at the second.
+    /// Where on each axis they are deepest in each other, 0 at the first sphere and 1 at the second.
     pub(crate) places: [f64; 2],
     /// Unit vector from the second axis to the first, there.
     pub(crate) apart: DVec3,
@@ -41,11 +41,11 @@ pub(crate) fn energy(posed: &PosedHand) -> f64 {
 /// All phalanges of different digits that are too deep in each other. For this purpose a phalanx is
 /// as thick everywhere as it is on average.
 pub(crate) fn penetrations(posed: &PosedHand) -> impl Iterator<Item = Penetration> + '_ {
-    let primitives = posed.primitives.iter().zip(&posed.links).enumerate();
+    let primitives = posed.primitives.iter().zip(&posed.bones).enumerate();
     let phalanges: Vec<_> = primitives
-        .filter_map(|(number, (primitive, links))| match (primitive, links[0], links[1]) {
-            (Primitive::RoundCone(balls), Link::Segment(digit, _), Link::Segment(..)) => {
-                Some((number, digit, *balls))
+        .filter_map(|(number, (primitive, bones))| match (primitive, bones[0], bones[1]) {
+            (Primitive::RoundCone(spheres), Bone::Segment(digit, _), Bone::Segment(..)) => {
+                Some((number, digit, *spheres))
             }
             _ => None,
         })
@@ -57,15 +57,19 @@ pub(crate) fn penetrations(posed: &PosedHand) -> impl Iterator<Item = Penetratio
     })
 }
 
-fn penetration(primitives: [usize; 2], one: [Ball; 2], other: [Ball; 2]) -> Option<Penetration> {
-    let thick = |balls: [Ball; 2]| f64::midpoint(balls[0].radius, balls[1].radius);
+fn penetration(
+    primitives: [usize; 2],
+    one: [Sphere; 2],
+    other: [Sphere; 2],
+) -> Option<Penetration> {
+    let thick = |spheres: [Sphere; 2]| f64::midpoint(spheres[0].radius, spheres[1].radius);
     let reach = thick(one) + thick(other) - GIVES;
-    let long = |balls: [Ball; 2]| balls[0].center.distance(balls[1].center);
+    let long = |spheres: [Sphere; 2]| spheres[0].center.distance(spheres[1].center);
     // Most pairs are nowhere near each other.
     if one[0].center.distance(other[0].center) > reach + long(one) + long(other) {
         return None;
     }
-    let axes = [one, other].map(|balls| balls.map(|ball| ball.center));
+    let axes = [one, other].map(|spheres| spheres.map(|sphere| sphere.center));
     let places = nearest(axes[0], axes[1]);
     let [p, q] = [0, 1].map(|k| axes[k][0].lerp(axes[k][1], places[k]));
     let excess = reach - p.distance(q);

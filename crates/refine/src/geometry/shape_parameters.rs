@@ -4,13 +4,13 @@ use glam::{DAffine3, DVec3};
 use phalanx_hand::{HandShape, Pose, PosedHand};
 
 /// How a hand differs from a given one: the logarithms of a factor for its size and of one for every
-/// bone and radius, in the order of [`HandShape::varied`].
+/// bone and radius, in the order of [`HandShape::scaled`].
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ShapeParameters {
     pub(crate) logarithms: Vec<f64>,
 }
 
-/// How a ball changes with one of the numbers.
+/// How a sphere changes with one of the numbers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SphereSlope {
     pub(crate) number: usize,
@@ -22,7 +22,7 @@ impl ShapeParameters {
     /// Those of the given hand itself.
     pub(crate) fn of(given: &HandShape) -> Self {
         let mut logarithms = vec![0.0];
-        let _as_given = given.varied(|| {
+        let _as_given = given.scaled(|| {
             logarithms.push(0.0);
             1.0
         });
@@ -33,10 +33,10 @@ impl ShapeParameters {
     pub(crate) fn hand(&self, given: &HandShape) -> HandShape {
         let (size, each) = self.logarithms.split_first().expect("the size comes first");
         let mut each = each.iter();
-        given.varied(|| (size + each.next().copied().unwrap_or(0.0)).exp())
+        given.scaled(|| (size + each.next().copied().unwrap_or(0.0)).exp())
     }
 
-    /// How each ball of each primitive of the posed hand changes with the numbers, by differences.
+    /// How each sphere of each primitive of the posed hand changes with the numbers, by differences.
     pub(crate) fn slopes(
         &self,
         given: &HandShape,
@@ -51,8 +51,10 @@ impl ShapeParameters {
             changed.logarithms[number] += STEP;
             let changed = changed.hand(given).pose(pose, rest);
             for (primitive, slopes) in slopes.iter_mut().enumerate() {
-                let (before, after) =
-                    (posed.primitives[primitive].balls(), changed.primitives[primitive].balls());
+                let (before, after) = (
+                    posed.primitives[primitive].spheres(),
+                    changed.primitives[primitive].spheres(),
+                );
                 for (k, (a, b)) in before.iter().zip(after).enumerate() {
                     if a != b {
                         slopes[k].push(SphereSlope {

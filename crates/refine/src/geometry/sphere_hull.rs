@@ -1,4 +1,4 @@
-//! How far a camera's ray passes a hull of balls.
+//! How far a camera's ray passes a hull of spheres.
 //!
 //! A ray begins at the camera: of a primitive that crosses the camera's plane it passes what is in front,
 //! and what is behind it passes at the camera's centre.
@@ -8,19 +8,19 @@ use phalanx_hand::Primitive;
 
 /// A primitive of the hand in a camera's frame, as rays from the camera's centre see it.
 ///
-/// A ray touches the hull of some balls where it touches one of the balls whose centres and radii
+/// A ray touches the hull of some spheres where it touches one of the spheres whose centres and radii
 /// are means of theirs, weighted alike: ρ = min over weights of |distance of the ray from the
-/// centre| − radius is 0 on the outline, exactly and in any perspective. Where balls are behind the
+/// centre| − radius is 0 on the outline, exactly and in any perspective. Where spheres are behind the
 /// camera it is so only for edges, which is enough: nothing is seen there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SphereHull {
     centers: [DVec3; 3],
     radii: [f64; 3],
-    balls: usize,
-    /// From where the balls are held to the primitive, if it is squashed.
+    spheres: usize,
+    /// From where the spheres are held to the primitive, if it is squashed.
     squash: Option<DMat3>,
     /// What undoes the squash of a squashed primitive; rays are taken through it before they are
-    /// compared with the balls.
+    /// compared with the spheres.
     unsquash: Option<DMat3>,
 }
 
@@ -29,9 +29,9 @@ pub(crate) struct SphereHull {
 pub(crate) struct ClosestApproach {
     /// ρ, mm: positive outside.
     pub(crate) distance: f64,
-    /// Weights of the balls, summing to 1.
+    /// Weights of the spheres, summing to 1.
     pub(crate) weights: [f64; 3],
-    /// ∂ρ of a shift of the balls, in the camera's frame; zero where the ray goes through the
+    /// ∂ρ of a shift of the spheres, in the camera's frame; zero where the ray goes through the
     /// middle.
     pub(crate) normal: DVec3,
     /// For a squashed primitive the point of the ray that its rigid motion acts at, in the camera's
@@ -39,7 +39,7 @@ pub(crate) struct ClosestApproach {
     pub(crate) point: Option<DVec3>,
 }
 
-/// A ray, and how it passes the centres of balls.
+/// A ray, and how it passes the centres of spheres.
 struct Sight<'a> {
     ray: DVec3,
     /// From the ray's beginning.
@@ -51,13 +51,13 @@ struct Sight<'a> {
 }
 
 impl Sight<'_> {
-    /// From the nearest place of the ray, for balls whose depth has the sign of `depth`.
+    /// From the nearest place of the ray, for spheres whose depth has the sign of `depth`.
     fn to(&self, depth: f64) -> &[DVec3; 3] {
         if depth < 0.0 { self.centers } else { &self.across }
     }
 }
 
-/// Which ball of a hull a ray passes most closely.
+/// Which sphere of a hull a ray passes most closely.
 struct Nearest {
     distance: f64,
     weights: [f64; 3],
@@ -117,8 +117,8 @@ fn squared_distance(point: DVec2, from: DVec2, to: DVec2) -> f64 {
 impl SphereHull {
     /// Of a primitive in the camera's frame.
     pub(crate) fn new(primitive: &Primitive) -> Self {
-        let balls = primitive.balls();
-        let at = |k: usize| balls[k.min(balls.len() - 1)];
+        let spheres = primitive.spheres();
+        let at = |k: usize| spheres[k.min(spheres.len() - 1)];
         let squash =
             matches!(primitive, Primitive::GeneralisedCylinder { .. }).then(|| primitive.squash());
         let unsquash = squash.map(|squash| squash.inverse());
@@ -126,7 +126,7 @@ impl SphereHull {
         Self {
             centers: [0, 1, 2].map(|k| at(k).center + shift),
             radii: [0, 1, 2].map(|k| at(k).radius),
-            balls: balls.len(),
+            spheres: spheres.len(),
             squash,
             unsquash,
         }
@@ -134,12 +134,12 @@ impl SphereHull {
 
     /// Its outline's whereabouts in the plane z = 1: anywhere, if it comes close to the camera's plane.
     pub(crate) fn bound(&self) -> Bound {
-        // A ball off the axis is seen wider by less than this, if its depth is some radii.
+        // A sphere off the axis is seen wider by less than this, if its depth is some radii.
         const WIDER: f64 = 1.1;
         const RADII: f64 = 4.0;
         // A ray off the axis passes nearer than the plane says, by no more than this.
         const NEARER: f64 = 0.8;
-        // Undoing a squash only takes things apart: what passes the balls where the solid has them
+        // Undoing a squash only takes things apart: what passes the spheres where the solid has them
         // passes the solid no nearer than that.
         let centers = self.centers.map(|center| self.squash.map_or(center, |m| m * center));
         let seen = centers.map(|center| center.truncate() / center.z);
@@ -149,7 +149,7 @@ impl SphereHull {
         let around = seen.map(|corner| corner.distance(middle));
         let is_close = (0..3).any(|k| centers[k].z < RADII * self.radii[k]);
         Bound {
-            corners: self.balls,
+            corners: self.spheres,
             seen,
             middle,
             around: around[0].max(around[1]).max(around[2]),
@@ -188,7 +188,7 @@ impl SphereHull {
         let across = [0, 1, 2].map(|k| self.centers[k] - ray * depths[k]);
         let sight = Sight { ray, centers: &self.centers, depths, across };
         let nearest = |distance, weights| Nearest { distance, weights, through: false };
-        let Nearest { distance, weights, through } = match self.balls {
+        let Nearest { distance, weights, through } = match self.spheres {
             1 => nearest(sight.to(depths[0])[0].length() - self.radii[0], [1.0, 0.0, 0.0]),
             2 => {
                 let (distance, t) = self.edge(&sight, 0, 1);
@@ -206,7 +206,7 @@ impl SphereHull {
         Some(ClosestApproach { distance, weights, normal, point: None })
     }
 
-    /// ρ of the hull of two balls and the second one's weight.
+    /// ρ of the hull of two spheres and the second one's weight.
     fn edge(&self, sight: &Sight<'_>, from: usize, to: usize) -> (f64, f64) {
         let [first, last] = [sight.depths[from], sight.depths[to]];
         if (first < 0.0) == (last < 0.0) {
@@ -219,7 +219,7 @@ impl SphereHull {
         if one.0 <= other.0 { one } else { other }
     }
 
-    /// The same of balls whose weight is within a span, with where the ray passes them.
+    /// The same of spheres whose weight is within a span, with where the ray passes them.
     fn part_of_edge(
         &self,
         offsets: &[DVec3; 3],
@@ -235,7 +235,7 @@ impl SphereHull {
             let height = (p + q * foot).length();
             (foot + growth * height / (squared * beyond).sqrt()).clamp(span[0], span[1])
         } else if growth > 0.0 {
-            // The larger ball hides the smaller one.
+            // The larger sphere hides the smaller one.
             span[1]
         } else {
             span[0]
@@ -243,7 +243,7 @@ impl SphereHull {
         ((p + q * t).length() - r - growth * t, t)
     }
 
-    /// ρ of the hull of three balls: on an edge or, where the ray goes through the triangle of the
+    /// ρ of the hull of three spheres: on an edge or, where the ray goes through the triangle of the
     /// centres, there.
     fn triangle(&self, sight: &Sight<'_>) -> Nearest {
         let mut best =
@@ -281,32 +281,32 @@ impl SphereHull {
 
 #[cfg(test)]
 mod tests {
-    use phalanx_hand::Ball;
+    use phalanx_hand::Sphere;
     use proptest::prelude::*;
 
     use super::*;
 
-    fn ball() -> impl Strategy<Value = Ball> {
-        ball_at(600.0)
+    fn sphere() -> impl Strategy<Value = Sphere> {
+        sphere_at(600.0)
     }
 
     /// Around a depth, mm.
-    fn ball_at(depth: f64) -> impl Strategy<Value = Ball> {
+    fn sphere_at(depth: f64) -> impl Strategy<Value = Sphere> {
         (prop::array::uniform3(-60.0..60.0_f64), 2.0..20.0_f64).prop_map(move |(at, radius)| {
-            Ball::new(DVec3::from_array(at) + DVec3::Z * depth, radius)
+            Sphere::new(DVec3::from_array(at) + DVec3::Z * depth, radius)
         })
     }
 
-    /// ρ by trying many balls of the hull.
-    fn slow(balls: &[Ball; 3], ray: DVec3) -> f64 {
+    /// ρ by trying many spheres of the hull.
+    fn slow(spheres: &[Sphere; 3], ray: DVec3) -> f64 {
         const STEPS: i32 = 60;
         let mut least = f64::INFINITY;
         for i in 0..=STEPS {
             for j in 0..=STEPS - i {
                 let (s, t) = (f64::from(i) / f64::from(STEPS), f64::from(j) / f64::from(STEPS));
                 let weights = [1.0 - s - t, s, t];
-                let center: DVec3 = balls.iter().zip(weights).map(|(b, w)| b.center * w).sum();
-                let radius: f64 = balls.iter().zip(weights).map(|(b, w)| b.radius * w).sum();
+                let center: DVec3 = spheres.iter().zip(weights).map(|(b, w)| b.center * w).sum();
+                let radius: f64 = spheres.iter().zip(weights).map(|(b, w)| b.radius * w).sum();
                 let foot = ray * center.dot(ray).max(0.0);
                 least = least.min((center - foot).length() - radius);
             }
@@ -318,15 +318,15 @@ mod tests {
         #![proptest_config(crate::property::cases(128))]
 
         #[test]
-        fn rays_pass_hulls_as_they_pass_the_nearest_of_their_balls(
-            balls in prop::array::uniform3(ball()),
+        fn rays_pass_hulls_as_they_pass_the_nearest_of_their_spheres(
+            spheres in prop::array::uniform3(sphere()),
             at in prop::array::uniform2(-0.15..0.15_f64),
         ) {
             let place = DVec2::from_array(at);
             let ray = place.extend(1.0).normalize();
-            let hull = SphereHull::new(&Primitive::Wedge(balls));
-            let (fast, slow) = (hull.closest_approach(ray).distance, slow(&balls, ray));
-            // The slow one's balls are a few millimetres apart. Through the middle it is enough to
+            let hull = SphereHull::new(&Primitive::Wedge(spheres));
+            let (fast, slow) = (hull.closest_approach(ray).distance, slow(&spheres, ray));
+            // The slow one's spheres are a few millimetres apart. Through the middle it is enough to
             // be inside.
             let alike = fast <= slow + 1e-9 && slow - fast < 3.0;
             prop_assert!(alike || (fast < -1.9 && slow < fast), "{fast} is not {slow}");
@@ -338,7 +338,7 @@ mod tests {
         /// A primitive that crosses the camera's plane.
         #[test]
         fn rays_begin_at_the_camera(
-            ends in (ball_at(60.0), ball_at(-60.0)),
+            ends in (sphere_at(60.0), sphere_at(-60.0)),
             at in prop::array::uniform2(-0.5..0.5_f64),
         ) {
             let place = DVec2::from_array(at);
@@ -351,7 +351,7 @@ mod tests {
             prop_assert!(!hull.bound().is_beyond(place, 1e3));
             // The normal is the distance's slope.
             let moved = |by: DVec3| {
-                let ends = [ends.0, ends.1].map(|ball| Ball::new(ball.center + by, ball.radius));
+                let ends = [ends.0, ends.1].map(|sphere| Sphere::new(sphere.center + by, sphere.radius));
                 SphereHull::new(&Primitive::RoundCone(ends)).closest_approach(ray).distance
             };
             let slope = |axis: DVec3| (moved(axis * 1e-5) - moved(axis * -1e-5)) / 2e-5;
@@ -362,7 +362,7 @@ mod tests {
 
         #[test]
         fn no_ray_passes_a_squashed_solid_nearer_than_its_bound(
-            ends in prop::array::uniform2(ball()),
+            ends in prop::array::uniform2(sphere()),
             thin in prop::array::uniform3(-1.0..1.0_f64),
             flatness in 0.3..1.0_f64,
             at in prop::array::uniform2(-0.2..0.2_f64),

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use glam::{DAffine3, DMat3, DVec3};
-use phalanx_hand::{Dof, Link, Motions, PosedHand, Primitive};
+use phalanx_hand::{Bone, Dof, PosedHand, Primitive, Twists};
 
 use crate::geometry::correspondence::Correspondence;
 use crate::geometry::self_collision::Penetration;
@@ -14,10 +14,10 @@ use crate::solver::normal_equations::Row;
 
 /// A contact between a ray and a posed hand, in the world.
 pub(crate) struct Contact<'a> {
-    links: &'a [Link; 3],
-    /// The balls' weights in the place that the ray passes.
+    bones: &'a [Bone; 3],
+    /// The spheres' weights in the place that the ray passes.
     weights: [f64; 3],
-    /// What moves there, with weights: the balls' centres, or one point of a squashed primitive.
+    /// What moves there, with weights: the spheres' centres, or one point of a squashed primitive.
     points: [(f64, DVec3); 3],
     /// ∂residual of a shift, px/mm.
     normal: DVec3,
@@ -64,7 +64,7 @@ impl<'a> Place<'a> {
 
     pub(crate) fn contact<'p>(&self, found: &Correspondence, posed: &'p PosedHand) -> Contact<'p> {
         let approach = &found.approach;
-        let balls = posed.primitives[found.primitive].balls();
+        let spheres = posed.primitives[found.primitive].spheres();
         let points = match approach.point {
             Some(point) => {
                 let world = self.evidence.camera().extrinsics.to_world(point);
@@ -72,10 +72,12 @@ impl<'a> Place<'a> {
                 let nothing = (0.0, DVec3::ZERO);
                 [(1.0, motion.inverse().transform_point3(world)), nothing, nothing]
             }
-            None => [0, 1, 2].map(|k| (approach.weights[k], balls[k.min(balls.len() - 1)].center)),
+            None => {
+                [0, 1, 2].map(|k| (approach.weights[k], spheres[k.min(spheres.len() - 1)].center))
+            }
         };
         Contact {
-            links: &posed.links[found.primitive],
+            bones: &posed.bones[found.primitive],
             weights: approach.weights,
             points,
             normal: self.back * approach.normal * self.scale,
@@ -120,14 +122,14 @@ impl Rows {
         self.shared.clear();
     }
 
-    pub(crate) fn of_pose(&mut self, contact: &Contact<'_>, motions: &Motions) {
-        let Contact { links, points, normal, .. } = contact;
+    pub(crate) fn of_pose(&mut self, contact: &Contact<'_>, twists: &Twists) {
+        let Contact { bones, points, normal, .. } = contact;
         let mut k = 0;
         while k < 3 {
-            // Balls of one link move as one.
+            // Spheres of one bone move as one.
             let (mut weight, mut moment) = (0.0, DVec3::ZERO);
-            let link = links[k];
-            while k < 3 && links[k] == link {
+            let bone = bones[k];
+            while k < 3 && bones[k] == bone {
                 weight += points[k].0;
                 moment += points[k].1 * points[k].0;
                 k += 1;
@@ -135,9 +137,9 @@ impl Rows {
             if weight == 0.0 {
                 continue;
             }
-            for dof in link.dofs() {
+            for dof in bone.dofs() {
                 if let Some(slot) = self.slots[dof.index()] {
-                    let slope = weight * normal.dot(motions.of(dof).velocity(moment / weight));
+                    let slope = weight * normal.dot(twists.of(dof).velocity(moment / weight));
                     match self.own.iter_mut().find(|(other, _)| *other == slot) {
                         Some((_, sum)) => *sum += slope,
                         None => self.own.push((slot, slope)),
@@ -153,22 +155,22 @@ impl Rows {
         &mut self,
         penetration: &Penetration,
         posed: &PosedHand,
-        motions: &Motions,
+        twists: &Twists,
         slopes: Option<&[[Vec<SphereSlope>; 3]]>,
     ) {
         self.clear();
         for ((&primitive, &place), away) in
             penetration.primitives.iter().zip(&penetration.places).zip([-1.0, 1.0])
         {
-            let centers = [0, 1].map(|k| posed.primitives[primitive].balls()[k].center);
+            let centers = [0, 1].map(|k| posed.primitives[primitive].spheres()[k].center);
             let weights = [1.0 - place, place, 0.0];
             let contact = Contact {
-                links: &posed.links[primitive],
+                bones: &posed.bones[primitive],
                 weights,
                 points: [(1.0 - place, centers[0]), (place, centers[1]), (0.0, DVec3::ZERO)],
                 normal: penetration.apart * away,
             };
-            self.of_pose(&contact, motions);
+            self.of_pose(&contact, twists);
             if let Some(slopes) = slopes {
                 self.of_shape(&contact, &slopes[primitive], 0.0);
                 // It is as thick as on average.

@@ -25,7 +25,7 @@ pub(crate) fn linearise(
         None => problem.given.clone(),
     };
     let posed = hand.pose(&parameters.pose, problem.rest);
-    let motions = hand.motions(&parameters.pose, problem.rest);
+    let twists = hand.twists(&parameters.pose, problem.rest);
     let slopes = problem
         .freedom
         .hand
@@ -57,7 +57,7 @@ pub(crate) fn linearise(
             let residual = distance - margin;
             let contact = place.contact(found, &posed);
             rows.clear();
-            rows.of_pose(&contact, &motions);
+            rows.of_pose(&contact, &twists);
             rows.own.push((numbers + v, -1.0));
             if !parameters.corrections.is_empty() {
                 let first = corrections + ExtrinsicsCorrection::NUMBERS * v;
@@ -76,7 +76,7 @@ pub(crate) fn linearise(
         }
     }
     for penetration in penetrations(&posed) {
-        rows.of_penetration(&penetration, &posed, &motions, slopes.as_deref());
+        rows.of_penetration(&penetration, &posed, &twists, slopes.as_deref());
         let Penetration { excess, .. } = penetration;
         system.add(excess, penetration.energy(), Penetration::WEIGHT, &rows.own, &rows.shared);
     }

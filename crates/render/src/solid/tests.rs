@@ -1,7 +1,7 @@
 //! Closed-form hits against the distance to a hull, found by search.
 
 use glam::{DMat3, DVec2, DVec3};
-use phalanx_hand::{Ball, Primitive};
+use phalanx_hand::{Primitive, Sphere};
 use proptest::prelude::*;
 
 use crate::solid::Scene;
@@ -20,25 +20,25 @@ fn least(mut f: impl FnMut(f64) -> f64) -> f64 {
     f(0.5 * (from + to))
 }
 
-/// Signed distance from a point to the hull of balls: the least over all balls between them.
-fn distance(balls: &[Ball], point: DVec3) -> f64 {
+/// Signed distance from a point to the hull of spheres: the least over all spheres between them.
+fn distance(spheres: &[Sphere], point: DVec3) -> f64 {
     let to = |center: DVec3, radius: f64| (point - center).length() - radius;
-    match balls {
+    match spheres {
         [a] => to(a.center, a.radius),
         [a, b] => least(|x| to(a.center.lerp(b.center, x), a.radius + (b.radius - a.radius) * x)),
         [a, b, c] => least(|x| {
             let radius = a.radius + (b.radius - a.radius) * x;
-            let between = Ball::new(a.center.lerp(b.center, x), radius);
+            let between = Sphere::new(a.center.lerp(b.center, x), radius);
             distance(&[between, *c], point)
         }),
-        _ => unreachable!("solids have one to three balls"),
+        _ => unreachable!("solids have one to three spheres"),
     }
 }
 
 /// The distance before squashing: the right sign, and zero at the right places.
 fn unsquashed(solid: &Primitive, point: DVec3) -> f64 {
-    let (balls, unsquash) = (solid.balls(), solid.squash().inverse());
-    distance(balls, balls[0].center + unsquash * (point - balls[0].center))
+    let (spheres, unsquash) = (solid.spheres(), solid.squash().inverse());
+    distance(spheres, spheres[0].center + unsquash * (point - spheres[0].center))
 }
 
 fn gradient(f: impl Fn(DVec3) -> f64, at: DVec3) -> DVec3 {
@@ -50,17 +50,17 @@ fn gradient(f: impl Fn(DVec3) -> f64, at: DVec3) -> DVec3 {
 }
 
 prop_compose! {
-    fn balls()(x in -40.0..40.0, y in -40.0..40.0, z in 260.0..340.0, radius in 2.0..25.0) -> Ball {
-        Ball::new(DVec3::new(x, y, z), radius)
+    fn spheres()(x in -40.0..40.0, y in -40.0..40.0, z in 260.0..340.0, radius in 2.0..25.0) -> Sphere {
+        Sphere::new(DVec3::new(x, y, z), radius)
     }
 }
 
 fn solids() -> impl Strategy<Value = Primitive> {
-    let squashed = (balls(), balls(), -1.0..1.0f64, 0.0..6.0f64, 0.3..1.0f64);
+    let squashed = (spheres(), spheres(), -1.0..1.0f64, 0.0..6.0f64, 0.3..1.0f64);
     prop_oneof![
-        balls().prop_map(Primitive::Sphere),
-        (balls(), balls()).prop_map(|(a, b)| Primitive::RoundCone([a, b])),
-        (balls(), balls(), balls()).prop_map(|(a, b, c)| Primitive::Wedge([a, b, c])),
+        spheres().prop_map(Primitive::Sphere),
+        (spheres(), spheres()).prop_map(|(a, b)| Primitive::RoundCone([a, b])),
+        (spheres(), spheres(), spheres()).prop_map(|(a, b, c)| Primitive::Wedge([a, b, c])),
         squashed.prop_map(|(a, b, height, turn, flatness)| {
             let across = DVec2::from_angle(turn) * (1.0 - height * height).sqrt();
             let thin_axis = across.extend(height);

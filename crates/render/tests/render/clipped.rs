@@ -5,7 +5,7 @@ use crate::silhouette::{assert_like_rays, lens, silhouette};
 use crate::strategies::{crossing_solids, lenses, solids};
 use glam::{DAffine3, DVec2, DVec3};
 use phalanx_camera::{Camera, Distortion};
-use phalanx_hand::{Ball, Primitive};
+use phalanx_hand::{Primitive, Sphere};
 use phalanx_render::{Appearance, Background, Renderer, Supersampling};
 use proptest::prelude::*;
 
@@ -23,21 +23,21 @@ fn least(f: &dyn Fn(f64) -> f64) -> f64 {
     f(0.5 * (from + to))
 }
 
-/// How far a ray from an origin passes outside the hull of some balls: the least over all balls
+/// How far a ray from an origin passes outside the hull of some spheres: the least over all spheres
 /// between them.
-fn passes(balls: &[Ball], origin: DVec3, direction: DVec3) -> f64 {
-    let outside = |ball: &Ball| {
-        let to = ball.center - origin;
-        to.distance(direction * direction.dot(to).max(0.0)) - ball.radius
+fn passes(spheres: &[Sphere], origin: DVec3, direction: DVec3) -> f64 {
+    let outside = |sphere: &Sphere| {
+        let to = sphere.center - origin;
+        to.distance(direction * direction.dot(to).max(0.0)) - sphere.radius
     };
-    let between = |a: &Ball, b: &Ball, x: f64| {
-        Ball::new(a.center.lerp(b.center, x), a.radius + (b.radius - a.radius) * x)
+    let between = |a: &Sphere, b: &Sphere, x: f64| {
+        Sphere::new(a.center.lerp(b.center, x), a.radius + (b.radius - a.radius) * x)
     };
-    match balls {
+    match spheres {
         [a] => outside(a),
         [a, b] => least(&|x| outside(&between(a, b, x))),
         [a, b, c] => least(&|x| passes(&[between(a, b, x), *c], origin, direction)),
-        _ => unreachable!("solids have one to three balls"),
+        _ => unreachable!("solids have one to three spheres"),
     }
 }
 
@@ -46,10 +46,10 @@ fn sees(camera: &Camera, solid: &Primitive, pixel: DVec2) -> bool {
     let to_camera =
         DAffine3::from_mat3_translation(camera.extrinsics.rotation, camera.extrinsics.translation);
     let solid = solid.moved(&to_camera);
-    let (balls, unsquash) = (solid.balls(), solid.squash().inverse());
-    let origin = balls[0].center - unsquash * balls[0].center;
+    let (spheres, unsquash) = (solid.spheres(), solid.squash().inverse());
+    let origin = spheres[0].center - unsquash * spheres[0].center;
     let Some(direction) = camera.intrinsics.to_normalised(pixel) else { return false };
-    passes(balls, origin, (unsquash * direction.extend(1.0)).normalize()) < 0.0
+    passes(spheres, origin, (unsquash * direction.extend(1.0)).normalize()) < 0.0
 }
 
 proptest! {
@@ -84,7 +84,7 @@ proptest! {
     fn clipping_sets_in_smoothly(x in -60.0..60.0, y in -60.0..60.0, radius in 3.0..30.0) {
         let near = |gap: f64| {
             let center = DVec3::new(x, y, -300.0 + radius + 1.0 + gap);
-            let cone = [Ball::new(center, radius), Ball::new(DVec3::ZERO, 20.0)];
+            let cone = [Sphere::new(center, radius), Sphere::new(DVec3::ZERO, 20.0)];
             let mut renderer = Renderer::new(&lens(Distortion::NONE)).unwrap();
             renderer.coverage(&[Primitive::RoundCone(cone)], Supersampling::X8).unwrap()
         };
@@ -97,7 +97,7 @@ proptest! {
 
 #[test]
 fn what_is_behind_the_camera_is_not_seen() {
-    let behind = Primitive::Sphere(Ball::new(DVec3::new(0.0, 0.0, -400.0), 30.0));
+    let behind = Primitive::Sphere(Sphere::new(DVec3::new(0.0, 0.0, -400.0), 30.0));
     let camera = lens(Distortion::NONE);
     assert!(silhouette(&camera, &[behind]).iter().all(|&grey| grey == 0));
     let depth = Renderer::new(&camera).unwrap().depth(&[behind]).unwrap();
@@ -106,7 +106,7 @@ fn what_is_behind_the_camera_is_not_seen() {
 
 #[test]
 fn what_holds_the_camera_covers_everything() {
-    let around = Primitive::Sphere(Ball::new(DVec3::new(0.0, 0.0, -310.0), 30.0));
+    let around = Primitive::Sphere(Sphere::new(DVec3::new(0.0, 0.0, -310.0), 30.0));
     let camera = lens(Distortion { k1: -0.2, ..Distortion::NONE });
     assert!(silhouette(&camera, &[around]).iter().all(|&grey| grey == 255));
     let mut renderer = Renderer::new(&camera).unwrap();

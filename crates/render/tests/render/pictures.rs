@@ -5,11 +5,11 @@ use crate::strategies::camera;
 use glam::DVec3;
 use image::{Rgb, RgbImage};
 use phalanx_camera::{Camera, Intrinsics};
-use phalanx_hand::{Ball, Primitive};
+use phalanx_hand::{Primitive, Sphere};
 use phalanx_render::{Appearance, Background, Error, Renderer, Supersampling};
 use proptest::prelude::*;
 
-const BALL: Primitive = Primitive::Sphere(Ball::new(DVec3::ZERO, 30.0));
+const SPHERE: Primitive = Primitive::Sphere(Sphere::new(DVec3::ZERO, 30.0));
 
 fn renderer() -> Renderer {
     Renderer::new(&camera(Intrinsics::pinhole(120, 90, 110.0))).unwrap()
@@ -29,13 +29,13 @@ fn plain() -> Appearance {
 fn depth_is_along_the_axis() {
     // The camera stands 300 mm in front; a wide flat wedge faces it.
     let flat = [[-900.0, -900.0], [900.0, -900.0], [0.0, 1500.0]]
-        .map(|[x, y]| Ball::new(DVec3::new(x, y, 0.0), 10.0));
+        .map(|[x, y]| Sphere::new(DVec3::new(x, y, 0.0), 10.0));
     let map = renderer().depth(&[Primitive::Wedge(flat)]).unwrap();
     assert_eq!((map.width, map.height, map.depths.len()), (120, 90, 120 * 90));
     assert!(map.depths.iter().all(|z| (z - 290.0).abs() < 1e-3));
     // An odd size puts a pixel's centre on the axis.
     let mut odd = Renderer::new(&camera(Intrinsics::pinhole(121, 91, 110.0))).unwrap();
-    let map = odd.depth(&[BALL]).unwrap();
+    let map = odd.depth(&[SPHERE]).unwrap();
     assert!((map.depths[45 * 121 + 60] - 270.0).abs() < 1e-3);
     assert_eq!(map.depths[0], f32::INFINITY);
 }
@@ -43,8 +43,8 @@ fn depth_is_along_the_axis() {
 #[test]
 fn fully_ambient_skin_is_one_colour() {
     let look = Appearance { ambient: 1.0, ..plain() };
-    let picture = renderer().shade(&[BALL], &look, 1).unwrap();
-    let depth = renderer().depth(&[BALL]).unwrap();
+    let picture = renderer().shade(&[SPHERE], &look, 1).unwrap();
+    let depth = renderer().depth(&[SPHERE]).unwrap();
     for (pixel, z) in picture.pixels().zip(&depth.depths) {
         let wanted = if z.is_finite() { look.skin } else { [84, 98, 112] };
         assert_eq!(pixel.0, wanted);
@@ -53,7 +53,8 @@ fn fully_ambient_skin_is_one_colour() {
 
 #[test]
 fn the_side_towards_the_light_is_brighter() {
-    let lit_from = |light| renderer().shade(&[BALL], &Appearance { light, ..plain() }, 1).unwrap();
+    let lit_from =
+        |light| renderer().shade(&[SPHERE], &Appearance { light, ..plain() }, 1).unwrap();
     let red = |picture: &RgbImage, x, y| picture.get_pixel(x, y).0[0];
     // World x is to the right of the image and y down it.
     let right = lit_from(DVec3::X);
@@ -73,8 +74,8 @@ fn edges_mix_with_the_background_by_coverage() {
         sampling: Supersampling::X8,
         ..plain()
     };
-    let picture = renderer().shade(&[BALL], &black, 1).unwrap();
-    let coverage = renderer().coverage(&[BALL], Supersampling::X8).unwrap();
+    let picture = renderer().shade(&[SPHERE], &black, 1).unwrap();
+    let coverage = renderer().coverage(&[SPHERE], Supersampling::X8).unwrap();
     let differences = picture.pixels().zip(coverage.pixels()).map(|(a, b)| a.0[0].abs_diff(b.0[0]));
     // The outline may be 0.01 px off, which is at most one row of a pixel's 8 × 8 samples.
     assert!(differences.clone().all(|difference| difference <= 32));
@@ -98,9 +99,9 @@ fn noise_has_its_strength_and_its_seed() {
         noise_sigma: 5.0,
         ..Appearance::default()
     };
-    let picture = renderer().shade(&[BALL], &look, 7).unwrap();
-    assert_eq!(picture, renderer().shade(&[BALL], &look, 7).unwrap());
-    assert_ne!(picture, renderer().shade(&[BALL], &look, 8).unwrap());
+    let picture = renderer().shade(&[SPHERE], &look, 7).unwrap();
+    assert_eq!(picture, renderer().shade(&[SPHERE], &look, 7).unwrap());
+    assert_ne!(picture, renderer().shade(&[SPHERE], &look, 8).unwrap());
     let empty = renderer().shade(&[], &look, 7).unwrap();
     let count = empty.len() as f64;
     let off =
@@ -129,19 +130,19 @@ fn bad_appearances_are_refused_by_name() {
 
 #[test]
 fn bad_solids_are_refused_by_index() {
-    let ball = |x: f64, radius: f64| Ball::new(DVec3::new(x, 0.0, 0.0), radius);
+    let sphere = |x: f64, radius: f64| Sphere::new(DVec3::new(x, 0.0, 0.0), radius);
     let squashed = |thin_axis: DVec3, flatness: f64| Primitive::GeneralisedCylinder {
-        ends: [ball(0.0, 5.0), ball(20.0, 5.0)],
+        ends: [sphere(0.0, 5.0), sphere(20.0, 5.0)],
         thin_axis,
         flatness,
     };
     for (solid, field) in [
-        (Primitive::Sphere(ball(f64::NAN, 5.0)), "center"),
-        (Primitive::RoundCone([ball(0.0, 5.0), ball(f64::INFINITY, 5.0)]), "center"),
-        (Primitive::Sphere(ball(-1e34, 5.0)), "center"),
-        (Primitive::Sphere(ball(0.0, 0.0)), "radius"),
-        (Primitive::Sphere(ball(0.0, 1e34)), "radius"),
-        (Primitive::Sphere(ball(0.0, f64::INFINITY)), "radius"),
+        (Primitive::Sphere(sphere(f64::NAN, 5.0)), "center"),
+        (Primitive::RoundCone([sphere(0.0, 5.0), sphere(f64::INFINITY, 5.0)]), "center"),
+        (Primitive::Sphere(sphere(-1e34, 5.0)), "center"),
+        (Primitive::Sphere(sphere(0.0, 0.0)), "radius"),
+        (Primitive::Sphere(sphere(0.0, 1e34)), "radius"),
+        (Primitive::Sphere(sphere(0.0, f64::INFINITY)), "radius"),
         (squashed(DVec3::ZERO, 0.5), "thin_axis"),
         (squashed(DVec3::Y * 2.0, 0.5), "thin_axis"),
         (squashed(DVec3::Y, 0.0), "flatness"),
@@ -149,7 +150,7 @@ fn bad_solids_are_refused_by_index() {
         (squashed(DVec3::Y, f64::NAN), "flatness"),
     ] {
         let error = Error::Primitive { index: 1, field };
-        assert_eq!(renderer().silhouette(&[BALL, solid]), Err(error));
+        assert_eq!(renderer().silhouette(&[SPHERE, solid]), Err(error));
     }
 }
 
@@ -176,15 +177,15 @@ proptest! {
     fn nothing_panics(numbers in prop::collection::vec(prop_oneof![
         -1e3..1e3f64, -1e-9..1e-9f64, -1e300..1e300f64, prop::num::f64::ANY,
     ], 16)) {
-        let ball = |i: usize| {
-            Ball::new(DVec3::from_slice(&numbers[i..i + 3]), numbers[i + 3])
+        let sphere = |i: usize| {
+            Sphere::new(DVec3::from_slice(&numbers[i..i + 3]), numbers[i + 3])
         };
         let solids = [
-            Primitive::Sphere(ball(0)),
-            Primitive::RoundCone([ball(0), ball(4)]),
-            Primitive::Wedge([ball(0), ball(4), ball(8)]),
+            Primitive::Sphere(sphere(0)),
+            Primitive::RoundCone([sphere(0), sphere(4)]),
+            Primitive::Wedge([sphere(0), sphere(4), sphere(8)]),
             Primitive::GeneralisedCylinder {
-                ends: [ball(0), ball(4)],
+                ends: [sphere(0), sphere(4)],
                 thin_axis: DVec3::from_slice(&numbers[8..11]).normalize_or(DVec3::X),
                 flatness: numbers[11].abs().min(1.0),
             },

@@ -1,11 +1,11 @@
 //! Silhouettes against rays, areas, points and projected dots.
 
 use crate::property;
-use crate::strategies::{balls, camera, cylinders, lenses, solids, unit_vectors};
+use crate::strategies::{camera, cylinders, lenses, solids, spheres, unit_vectors};
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use image::GrayImage;
 use phalanx_camera::{Camera, Distortion, Extrinsics, Intrinsics, Lens};
-use phalanx_hand::{Ball, Primitive};
+use phalanx_hand::{Primitive, Sphere};
 use phalanx_render::{Renderer, Supersampling};
 use proptest::prelude::*;
 
@@ -56,14 +56,14 @@ fn centroid(image: &GrayImage) -> DVec2 {
     sum / weight
 }
 
-/// Points on and in a solid: on balls between its own.
+/// Points on and in a solid: on spheres between its own.
 fn points(solid: &Primitive, count: u32) -> impl Iterator<Item = DVec3> {
-    let balls = solid.balls().to_vec();
+    let spheres = solid.spheres().to_vec();
     let squash = solid.squash();
     // Three low-discrepancy sequences (multiples of powers of an irrational number).
     let share = |i: u32, step: f64| (f64::from(i) * step).fract();
     (0..count).map(move |i| {
-        let (first, last) = (balls[0], balls[balls.len() - 1]);
+        let (first, last) = (spheres[0], spheres[spheres.len() - 1]);
         let between = (share(i, 0.819_172_513_4) * 1.5 - 0.25).clamp(0.0, 1.0);
         let height = 2.0 * share(i, 0.671_043_606_7) - 1.0;
         let around = DVec2::from_angle(std::f64::consts::TAU * share(i, 0.549_700_477_9));
@@ -112,19 +112,19 @@ proptest! {
     }
 
     #[test]
-    fn coverage_adds_up_to_the_area(ball in balls(40.0)) {
+    fn coverage_adds_up_to_the_area(sphere in spheres(40.0)) {
         let camera = lens(Lens::PERFECT);
         let image = Renderer::new(&camera)
             .unwrap()
-            .coverage(&[Primitive::Sphere(ball)], Supersampling::X8)
+            .coverage(&[Primitive::Sphere(sphere)], Supersampling::X8)
             .unwrap();
-        // A ball of radius r at distance d and depth z has the half-axes
+        // A sphere of radius r at distance d and depth z has the half-axes
         // f r √(d² − r²) / (z² − r²) and f r / √(z² − r²).
-        let c = camera.extrinsics.to_camera(ball.center);
-        let squared = ball.radius * ball.radius;
+        let c = camera.extrinsics.to_camera(sphere.center);
+        let squared = sphere.radius * sphere.radius;
         let narrow = c.z * c.z - squared;
-        let long = 110.0 * ball.radius * (c.length_squared() - squared).sqrt() / narrow;
-        let short = 110.0 * ball.radius / narrow.sqrt();
+        let long = 110.0 * sphere.radius * (c.length_squared() - squared).sqrt() / narrow;
+        let short = 110.0 * sphere.radius / narrow.sqrt();
         let area = std::f64::consts::PI * long * short;
         let drawn = mean(&image) * f64::from(120 * 90);
         prop_assert!((drawn - area).abs() < 0.01 * area + 0.15, "{drawn} px², not {area}");
@@ -136,7 +136,7 @@ proptest! {
         (left, top) in (0u32..20, 0u32..15), (width, height) in (150u32..300, 150u32..300),
     ) {
         let point = DVec3::new(x, y, z);
-        let dot = [Primitive::Sphere(Ball::new(point, 3.0))];
+        let dot = [Primitive::Sphere(Sphere::new(point, 3.0))];
         let whole = lens(distortion);
         let cropped = whole.intrinsics.cropped(left, top, 100, 75).unwrap();
         let resized = cropped.resized(width, height);
@@ -205,10 +205,10 @@ proptest! {
 #[test]
 fn coarse_outlines_lose_no_more_than_they_may() {
     let camera = lens(Lens::PERFECT);
-    let ball = [Primitive::Sphere(Ball::new(DVec3::new(3.0, -2.0, 300.0), 80.0))];
+    let sphere = [Primitive::Sphere(Sphere::new(DVec3::new(3.0, -2.0, 300.0), 80.0))];
     let drawn = |deviation: f64| {
         let mut renderer = Renderer::new(&camera).unwrap().with_deviation(deviation).unwrap();
-        mean(&renderer.coverage(&ball, Supersampling::X8).unwrap())
+        mean(&renderer.coverage(&sphere, Supersampling::X8).unwrap())
     };
     let pixels = 120.0 * 90.0;
     let (fine, coarse) = (drawn(0.001) * pixels, drawn(0.2) * pixels);
@@ -220,10 +220,10 @@ fn coarse_outlines_lose_no_more_than_they_may() {
 #[test]
 fn an_image_of_another_size_is_replaced() {
     let mut renderer = Renderer::new(&lens(Lens::PERFECT)).unwrap();
-    let ball = [Primitive::Sphere(Ball::new(DVec3::ZERO, 20.0))];
+    let sphere = [Primitive::Sphere(Sphere::new(DVec3::ZERO, 20.0))];
     let mut image = GrayImage::from_pixel(3, 5, image::Luma([9]));
-    renderer.silhouette_into(&ball, &mut image).unwrap();
-    assert_eq!(image, renderer.silhouette(&ball).unwrap());
+    renderer.silhouette_into(&sphere, &mut image).unwrap();
+    assert_eq!(image, renderer.silhouette(&sphere).unwrap());
     renderer.silhouette_into(&[], &mut image).unwrap();
     assert_eq!(image, GrayImage::new(120, 90));
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use phalanx_camera::{Camera, Distortion, Fisheye, Intrinsics, Lens};
-use phalanx_hand::{Ball, Primitive};
+use phalanx_hand::{Primitive, Sphere};
 use proptest::prelude::*;
 
 /// A camera 300 mm in front of the origin that looks at it along the world's z axis.
@@ -20,15 +20,15 @@ pub(crate) fn lenses() -> impl Strategy<Value = Lens> {
     prop_oneof![Just(Lens::PERFECT), bent, fisheye]
 }
 
-pub(crate) fn balls(reach: f64) -> impl Strategy<Value = Ball> {
+pub(crate) fn spheres(reach: f64) -> impl Strategy<Value = Sphere> {
     (-reach..reach, -reach..reach, -60.0..60.0, 3.0..30.0)
-        .prop_map(|(x, y, z, radius)| Ball::new(DVec3::new(x, y, z), radius))
+        .prop_map(|(x, y, z, radius)| Sphere::new(DVec3::new(x, y, z), radius))
 }
 
-/// Balls before, behind and beside the camera, and around it.
-fn balls_all_around() -> impl Strategy<Value = Ball> {
+/// Spheres before, behind and beside the camera, and around it.
+fn spheres_all_around() -> impl Strategy<Value = Sphere> {
     (-150.0..150.0, -150.0..150.0, -500.0..-100.0, 3.0..50.0)
-        .prop_map(|(x, y, z, radius)| Ball::new(DVec3::new(x, y, z), radius))
+        .prop_map(|(x, y, z, radius)| Sphere::new(DVec3::new(x, y, z), radius))
 }
 
 pub(crate) fn unit_vectors() -> impl Strategy<Value = DVec3> {
@@ -38,33 +38,35 @@ pub(crate) fn unit_vectors() -> impl Strategy<Value = DVec3> {
 }
 
 pub(crate) fn cylinders(reach: f64) -> impl Strategy<Value = Primitive> {
-    squashed(balls(reach), balls(reach))
+    squashed(spheres(reach), spheres(reach))
 }
 
 fn squashed(
-    a: impl Strategy<Value = Ball>,
-    b: impl Strategy<Value = Ball>,
+    a: impl Strategy<Value = Sphere>,
+    b: impl Strategy<Value = Sphere>,
 ) -> impl Strategy<Value = Primitive> {
     (a, b, unit_vectors(), 0.3..1.0f64).prop_map(|(a, b, thin_axis, flatness)| {
         Primitive::GeneralisedCylinder { ends: [a, b], thin_axis, flatness }
     })
 }
 
-/// Any solid with its balls within `reach` mm of the view's axis.
+/// Any solid with its spheres within `reach` mm of the view's axis.
 pub(crate) fn solids(reach: f64) -> impl Strategy<Value = Primitive> {
-    solids_of(move || balls(reach))
+    solids_of(move || spheres(reach))
 }
 
 /// Any solid, most of which cross the camera's plane.
 pub(crate) fn crossing_solids() -> impl Strategy<Value = Primitive> {
-    solids_of(balls_all_around)
+    solids_of(spheres_all_around)
 }
 
-fn solids_of<S: Strategy<Value = Ball>>(ball: impl Fn() -> S) -> impl Strategy<Value = Primitive> {
+fn solids_of<S: Strategy<Value = Sphere>>(
+    sphere: impl Fn() -> S,
+) -> impl Strategy<Value = Primitive> {
     prop_oneof![
-        ball().prop_map(Primitive::Sphere),
-        (ball(), ball()).prop_map(|(a, b)| Primitive::RoundCone([a, b])),
-        (ball(), ball(), ball()).prop_map(|(a, b, c)| Primitive::Wedge([a, b, c])),
-        squashed(ball(), ball()),
+        sphere().prop_map(Primitive::Sphere),
+        (sphere(), sphere()).prop_map(|(a, b)| Primitive::RoundCone([a, b])),
+        (sphere(), sphere(), sphere()).prop_map(|(a, b, c)| Primitive::Wedge([a, b, c])),
+        squashed(sphere(), sphere()),
     ]
 }

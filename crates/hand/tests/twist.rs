@@ -12,7 +12,7 @@ proptest! {
     #![proptest_config(property::cases(32))]
 
     #[test]
-    fn balls_move_as_the_motions_say(
+    fn spheres_move_as_the_motions_say(
         numbers in prop::array::uniform28(-1.0..1.0_f64),
         side in prop_oneof![Just(Side::Right), Just(Side::Left)],
         turn in prop::array::uniform3(-1.0..1.0_f64),
@@ -21,7 +21,7 @@ proptest! {
         let rotation = DQuat::from_scaled_axis(DVec3::from_array(turn));
         let rest = DAffine3::from_rotation_translation(rotation, DVec3::new(3.0, -70.0, 11.0));
         let pose = Pose(numbers);
-        let (hand, motions) = (shape.pose(&pose, &rest), shape.motions(&pose, &rest));
+        let (hand, twists) = (shape.pose(&pose, &rest), shape.twists(&pose, &rest));
         for dof in Dof::ALL {
             let shifted = |step: f64| {
                 let mut shifted = pose;
@@ -29,15 +29,15 @@ proptest! {
                 shape.pose(&shifted, &rest)
             };
             let (ahead, behind) = (shifted(STEP), shifted(-STEP));
-            for (solid, links) in hand.links.iter().enumerate() {
-                for (k, ball) in hand.primitives[solid].balls().iter().enumerate() {
-                    let (a, b) = (ahead.primitives[solid].balls()[k], behind.primitives[solid].balls()[k]);
+            for (solid, bones) in hand.bones.iter().enumerate() {
+                for (k, sphere) in hand.primitives[solid].spheres().iter().enumerate() {
+                    let (a, b) = (ahead.primitives[solid].spheres()[k], behind.primitives[solid].spheres()[k]);
                     let slope = (a.center - b.center) / (2.0 * STEP);
-                    let velocity = motions.of(dof).velocity(ball.center);
-                    let velocity = if links[k].is_moved_by(dof) { velocity } else { DVec3::ZERO };
+                    let velocity = twists.of(dof).velocity(sphere.center);
+                    let velocity = if bones[k].is_moved_by(dof) { velocity } else { DVec3::ZERO };
                     prop_assert!(
                         slope.abs_diff_eq(velocity, 1e-5),
-                        "{dof}, solid {solid}, ball {k}: {slope} is not {velocity}"
+                        "{dof}, solid {solid}, sphere {k}: {slope} is not {velocity}"
                     );
                 }
             }

@@ -6,7 +6,7 @@ use crate::dof::{Digit, Dof};
 
 /// A rigid part of the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Link {
+pub enum Bone {
     /// What is behind the wrist: moved by the global numbers alone.
     Forearm,
     /// The palm: moved by the wrist too.
@@ -16,7 +16,7 @@ pub enum Link {
     Segment(Digit, usize),
 }
 
-impl Link {
+impl Bone {
     /// Whether a number of the pose moves this part.
     pub fn is_moved_by(self, dof: Dof) -> bool {
         self.dofs().any(|own| own == dof)
@@ -25,11 +25,11 @@ impl Link {
     /// The numbers of the pose that move this part: at most 12.
     ///
     /// ```
-    /// use phalanx_hand::{Digit, Dof, Link};
+    /// use phalanx_hand::{Digit, Dof, Bone};
     ///
-    /// let middle_phalanx = Link::Segment(Digit::Index, 1);
+    /// let middle_phalanx = Bone::Segment(Digit::Index, 1);
     /// assert!(middle_phalanx.is_moved_by(Dof::IndexPip) && !middle_phalanx.is_moved_by(Dof::IndexDip));
-    /// assert_eq!(Link::Forearm.dofs().count(), 6);
+    /// assert_eq!(Bone::Forearm.dofs().count(), 6);
     /// ```
     pub fn dofs(self) -> impl Iterator<Item = Dof> {
         let global = 6;
@@ -47,7 +47,7 @@ impl Link {
 
 /// How one number of a pose moves what hangs on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Motion {
+pub enum Twist {
     /// About a line.
     Turn {
         /// The unit direction of the line.
@@ -59,7 +59,7 @@ pub enum Motion {
     Shift(DVec3),
 }
 
-impl Motion {
+impl Twist {
     /// The velocity of a point, mm per radian or per millimetre.
     pub fn velocity(&self, point: DVec3) -> DVec3 {
         match self {
@@ -69,13 +69,13 @@ impl Motion {
     }
 }
 
-/// How each number of a pose moves what hangs on it ([`Link::dofs`]), in world coordinates.
+/// How each number of a pose moves what hangs on it ([`Bone::dofs`]), in world coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Motions(pub(crate) [Motion; Dof::COUNT]);
+pub struct Twists(pub(crate) [Twist; Dof::COUNT]);
 
-impl Motions {
+impl Twists {
     /// Of one number.
-    pub fn of(&self, dof: Dof) -> &Motion {
+    pub fn of(&self, dof: Dof) -> &Twist {
         &self.0[dof.index()]
     }
 }
