@@ -4,6 +4,9 @@ mod detect;
 mod error;
 mod mask;
 mod masking;
+#[cfg(test)]
+#[path = "../tests/property/mod.rs"]
+mod property;
 mod silhouette;
 
 pub use detect::detector::{HandDetection, HandDetector};
@@ -12,6 +15,7 @@ pub use detect::wrist_trainer::WristTrainer;
 pub use error::{Error, Result};
 pub use mask::cleanup::{Cleanup, Workspace, clean, clean_into};
 pub use mask::resample::{CropWindow, downsample, downsample_mask};
+pub use masking::adapted_skin::AdaptedSkin;
 pub use masking::background::{BackgroundModel, BackgroundParams, BackgroundParts};
 pub use masking::chroma::chroma;
 pub use masking::label::Label;

@@ -6,7 +6,7 @@ use anyhow::{Result, ensure};
 use image::{DynamicImage, GrayImage};
 use phalanx::{TakeFrame, mask_from, photograph_from};
 use phalanx_camera::Camera;
-use phalanx_segmentation::SkinModel;
+use phalanx_segmentation::{AdaptedSkin, SkinModel};
 
 use super::timeline::{Moment, Timeline};
 use super::{Recording, Stamp};
@@ -130,6 +130,9 @@ fn mask(picture: &DynamicImage, camera: &Camera, pictures: Pictures) -> Result<G
     );
     Ok(match pictures {
         Pictures::Masks => mask_from(picture),
-        Pictures::Photographs => SkinModel::builtin().segment(&photograph_from(picture)),
+        Pictures::Photographs => {
+            let photograph = photograph_from(picture);
+            AdaptedSkin::new(&SkinModel::builtin(), &photograph).segment(&photograph)
+        }
     })
 }

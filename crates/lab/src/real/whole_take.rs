@@ -9,7 +9,7 @@ use image::{DynamicImage, GrayImage};
 use phalanx::{FrameFit, Progress, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take};
 use phalanx_camera::Camera;
 use phalanx_hand::HandShape;
-use phalanx_segmentation::SkinModel;
+use phalanx_segmentation::{AdaptedSkin, SkinModel};
 
 use super::method::{Found, Method, Outcome, Sequence, each_frame};
 use super::take::Input;
@@ -59,7 +59,10 @@ impl Fits {
         let mask = |picture: &DynamicImage| -> GrayImage {
             match input {
                 Input::Masks => picture.to_luma8(),
-                Input::Photographs => self.skin.segment(&picture.to_rgb8()),
+                Input::Photographs => {
+                    let photograph = picture.to_rgb8();
+                    AdaptedSkin::new(&self.skin, &photograph).segment(&photograph)
+                }
             }
         };
         TakeFrame { masks: pictures.iter().map(|picture| Some(mask(picture))).collect() }

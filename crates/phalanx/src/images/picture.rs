@@ -1,7 +1,7 @@
 //! What a camera gives.
 
 use image::{DynamicImage, GrayImage, RgbImage};
-use phalanx_segmentation::{BackgroundModel, PlainBackground, SkinModel};
+use phalanx_segmentation::{AdaptedSkin, BackgroundModel, PlainBackground, SkinModel};
 
 use crate::error::Result;
 
@@ -84,7 +84,7 @@ fn varying_alpha(picture: &DynamicImage) -> Option<Vec<u8>> {
 /// How the hand is told from the rest of a photograph.
 #[derive(Debug, Clone)]
 pub enum Segmenter {
-    /// By the colour of skin (§ 2 of the paper).
+    /// By the colour of skin (§ 2 of the paper), adapted to each picture.
     Skin(SkinModel),
     /// By its difference from the recorded background of the same camera, at the size at which it is segmented: the
     /// working size, or the picture's where windows are described.
@@ -94,13 +94,13 @@ pub enum Segmenter {
 }
 
 impl Segmenter {
-    /// The raw mask of a picture at the working size.
-    pub(crate) fn segment(
-        &self,
-        image: &RgbImage,
-    ) -> Result<GrayImage, phalanx_segmentation::Error> {
+    /// The raw mask of a picture, as large as it is.
+    ///
+    /// # Errors
+    /// A background of another size, or a wall that cannot be told from a hand.
+    pub fn segment(&self, image: &RgbImage) -> Result<GrayImage, phalanx_segmentation::Error> {
         match self {
-            Self::Skin(model) => Ok(model.segment(image)),
+            Self::Skin(model) => Ok(AdaptedSkin::new(model, image).segment(image)),
             Self::Background(model) => model.segment(image),
             Self::PlainBackground(wall) => wall.segment(image),
         }

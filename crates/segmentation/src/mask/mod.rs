@@ -3,4 +3,5 @@
 pub(crate) mod cleanup;
 pub(crate) mod components;
 pub(crate) mod majority;
+pub(crate) mod morphology;
 pub(crate) mod resample;

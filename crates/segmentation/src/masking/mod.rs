@@ -1,7 +1,9 @@
 //! Which pixels of a picture are hand: by the colour of skin, or unlike the background.
 
+pub(crate) mod adapted_skin;
 pub(crate) mod background;
 pub(crate) mod chroma;
+pub(crate) mod histogram;
 pub(crate) mod label;
 pub(crate) mod otsu;
 pub(crate) mod plain_background;

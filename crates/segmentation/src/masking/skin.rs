@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::masking::chroma::chroma;
+use crate::masking::histogram::smooth;
 use crate::masking::label::Label;
 
 /// How histograms become a decision.
@@ -44,6 +45,11 @@ impl SkinParams {
     #[inline]
     fn bin(self, rgb: [u8; 3]) -> usize {
         let (cb, cr) = chroma(rgb);
+        self.bin_of_chroma(cb, cr)
+    }
+
+    #[inline]
+    fn bin_of_chroma(self, cb: u8, cr: u8) -> usize {
         let drop = 8 - self.bits;
         (usize::from(cb >> drop) << self.bits) | usize::from(cr >> drop)
     }
@@ -150,6 +156,8 @@ impl SkinTrainer {
 #[serde(try_from = "SkinParts", into = "SkinParts")]
 pub struct SkinModel {
     parts: SkinParts,
+    /// The smoothed densities p(c | skin) and p(c | non-skin) in each bin, per level of Cb and of Cr.
+    densities: [Vec<f64>; 2],
     /// 255 where a bin is skin, 0 elsewhere.
     table: Vec<u8>,
 }
@@ -183,8 +191,20 @@ impl SkinModel {
                 return Err(Error::NoTrainingPixels(label));
             }
         }
-        let table = decide(&parts);
-        Ok(Self { parts, table })
+        let smoothed = [&parts.skin, &parts.non_skin].map(|histogram| {
+            let mut values: Vec<f64> = histogram.iter().map(|&n| f64::from(n)).collect();
+            smooth(&mut values, &[parts.params.side(); 2], parts.params.smoothing);
+            values
+        });
+        let table = decide(&parts, &smoothed);
+        let levels = f64::from(1_u32 << (2 * (8 - parts.params.bits)));
+        let [near_skin, near_other] = smoothed;
+        let density = |near: Vec<f64>, histogram: &[u32]| {
+            let pixels = levels * total(histogram);
+            near.into_iter().map(|near| near / pixels).collect()
+        };
+        let densities = [density(near_skin, &parts.skin), density(near_other, &parts.non_skin)];
+        Ok(Self { parts, densities, table })
     }
 
     /// What the model is made of.
@@ -218,6 +238,13 @@ impl SkinModel {
         self.fill(image, mask);
     }
 
+    /// The densities p(c | skin) and p(c | non-skin) of a chroma, per level of Cb and of Cr.
+    pub(crate) fn densities(&self, cb: u8, cr: u8) -> [f64; 2] {
+        let bin = self.parts.params.bin_of_chroma(cb, cr);
+        let [skin, other] = &self.densities;
+        [skin[bin], other[bin]]
+    }
+
     fn fill(&self, image: &RgbImage, mask: &mut GrayImage) {
         let (colours, _) = image.as_raw().as_chunks::<3>();
         let params = self.parts.params;
@@ -243,83 +270,13 @@ impl From<SkinModel> for SkinParts {
 
 /// Bayes' rule in every bin: skin where prior · p(c | skin) > (1 − prior) · p(c | non-skin).
 /// A colour that neither class has near it is not skin.
-fn decide(parts: &SkinParts) -> Vec<u8> {
-    let total = |histogram: &[u32]| histogram.iter().map(|&n| f64::from(n)).sum::<f64>();
+fn decide(parts: &SkinParts, [skin, non_skin]: &[Vec<f64>; 2]) -> Vec<u8> {
     let odds = parts.params.prior / (1.0 - parts.params.prior);
     let skin_weight = odds * total(&parts.non_skin) / total(&parts.skin);
-    let skin = smooth(&parts.skin, parts.params);
-    let non_skin = smooth(&parts.non_skin, parts.params);
     let decision = |(s, n): (&f64, &f64)| if skin_weight * s > *n { 255 } else { 0 };
-    skin.iter().zip(&non_skin).map(decision).collect()
+    skin.iter().zip(non_skin).map(decision).collect()
 }
 
-/// Convolves a histogram with the binomial kernel: `smoothing` passes of ¼ (1 2 1) along each
-/// side. Sums and powers of two only, so that every machine decides alike.
-fn smooth(histogram: &[u32], params: SkinParams) -> Vec<f64> {
-    let side = params.side();
-    let mut values: Vec<f64> = histogram.iter().map(|&n| f64::from(n)).collect();
-    let (mut line, mut passed) = (vec![0.0; side], vec![0.0; side]);
-    for stride in [1, side] {
-        for i in 0..side {
-            let first = if stride == 1 { i * side } else { i };
-            let cells = (first..).step_by(stride).take(side);
-            line.iter_mut().zip(cells.clone()).for_each(|(v, cell)| *v = values[cell]);
-            // Most lines are empty, and remain so.
-            if line.iter().all(|&v| v == 0.0) {
-                continue;
-            }
-            for _ in 0..params.smoothing {
-                pass(&line, &mut passed);
-                std::mem::swap(&mut line, &mut passed);
-            }
-            cells.zip(&line).for_each(|(cell, &v)| values[cell] = v);
-        }
-    }
-    values
-}
-
-/// ¼ (1 2 1) along a line, whose ends go on beyond it.
-fn pass(line: &[f64], passed: &mut [f64]) {
-    let mean = |before, here, after| (before + 2.0 * here + after) / 4.0;
-    let last = line.len() - 1;
-    passed[0] = mean(line[0], line[0], line[1]);
-    passed[last] = mean(line[last - 1], line[last], line[last]);
-    for (v, &[before, here, after]) in passed[1..last].iter_mut().zip(line.array_windows()) {
-        *v = mean(before, here, after);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// All passes, each over the whole plane.
-    fn slow(histogram: &[u32], params: SkinParams) -> Vec<f64> {
-        let side = params.side() as isize;
-        let mut values: Vec<f64> = histogram.iter().map(|&n| f64::from(n)).collect();
-        for (right, down) in [(1, 0), (0, 1)] {
-            for _ in 0..params.smoothing {
-                let within = |k: isize| k.clamp(0, side - 1);
-                let at = |x, y| values[(within(y) * side + within(x)) as usize];
-                let pass = |cell: isize| {
-                    let (x, y) = (cell % side, cell / side);
-                    (at(x - right, y - down) + 2.0 * at(x, y) + at(x + right, y + down)) / 4.0
-                };
-                values = (0..side * side).map(pass).collect();
-            }
-        }
-        values
-    }
-
-    #[test]
-    fn lines_are_smoothed_as_the_plane_is() {
-        for smoothing in [0, 1, 5, 16] {
-            let params = SkinParams { bits: 5, smoothing, prior: 0.5 };
-            let mut histogram = vec![0; params.side().pow(2)];
-            for (cell, count) in [(0, 7), (33, 1), (500, 90), (1023, 4)] {
-                histogram[cell] = count;
-            }
-            assert_eq!(smooth(&histogram, params), slow(&histogram, params));
-        }
-    }
+fn total(histogram: &[u32]) -> f64 {
+    histogram.iter().map(|&n| f64::from(n)).sum()
 }
