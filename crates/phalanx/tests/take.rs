@@ -1,13 +1,13 @@
 //! Whole takes of drawn hands, from masks and cameras alone.
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use image::GrayImage;
 use phalanx::{
-    Error, ItemRng, Missing, NoProgress, TakeFrame, TakeSettings, estimate_volume, fit_frame,
-    fit_take,
+    Error, FitDoubt, ItemRng, Missing, NoProgress, TakeFrame, TakeSettings, estimate_volume,
+    fit_frame, fit_take,
 };
-use phalanx_camera::{Camera, Intrinsics, Rig};
-use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
+use phalanx_camera::{Camera, Extrinsics, Intrinsics, Rig};
+use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose, Side};
 use phalanx_render::Renderer;
 
 /// A drawn take: cameras on three sides of a desk, and a hand that is no mean one.
@@ -115,6 +115,71 @@ fn a_view_that_shows_something_else_is_named_and_does_no_harm() {
     let errors: Vec<f64> =
         fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
     assert!(errors.iter().sum::<f64>() / 5.0 < 12.0, "{errors:.1?}");
+}
+
+/// The same as it is seen in a mirror: x turns round in the world and in every picture.
+fn mirrored(camera: &Camera) -> Camera {
+    let flip = DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0));
+    let Extrinsics { rotation, translation } = camera.extrinsics;
+    let extrinsics =
+        Extrinsics { rotation: flip * rotation * flip, translation: flip * translation };
+    let cx = f64::from(camera.intrinsics.width) - camera.intrinsics.cx;
+    let intrinsics = Intrinsics { cx, ..camera.intrinsics };
+    Camera { intrinsics, extrinsics, ..camera.clone() }
+}
+
+#[test]
+fn a_left_hand_is_fitted_as_a_right_one_in_a_mirror() {
+    let Drawn { cameras, frames, .. } = drawn(4);
+    let right = fit_take(&cameras, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
+    let cameras: Vec<Camera> = cameras.iter().map(mirrored).collect();
+    let flipped = |mask: &Option<GrayImage>| mask.as_ref().map(image::imageops::flip_horizontal);
+    let of_frame =
+        |frame: &TakeFrame| TakeFrame { masks: frame.masks.iter().map(flipped).collect() };
+    let frames: Vec<TakeFrame> = frames.iter().map(of_frame).collect();
+    let hand = HandShape { side: Side::Left, ..HandShape::adult() };
+    let settings = TakeSettings { hand, ..TakeSettings::default() };
+    let left = fit_take(&cameras, &frames, &settings, &NoProgress).expect("a fit");
+    assert_eq!(left.hand.side, Side::Left);
+    for (right, left) in right.frames.iter().zip(&left.frames) {
+        let seen = right.joints.map(|joint| joint * DVec3::new(-1.0, 1.0, 1.0));
+        let apart = mean_error(&left.joints, &seen);
+        assert!(apart < 3.0, "{apart:.1} mm");
+        assert_eq!(left.doubts.is_empty(), right.doubts.is_empty());
+    }
+}
+
+/// A camera and what it sees left of a column of its picture.
+fn cut(camera: &Camera, mask: &GrayImage, column: u32) -> (Camera, GrayImage) {
+    let intrinsics = Intrinsics { width: column, ..camera.intrinsics };
+    let seen = image::imageops::crop_imm(mask, 0, 0, column, mask.height()).to_image();
+    (Camera { intrinsics, ..camera.clone() }, seen)
+}
+
+#[test]
+fn a_hand_that_is_cut_off_is_doubted() {
+    let Drawn { cameras, frames, joints } = drawn(4);
+    // Through the fingers, in the one view that shows them to the right of the wrist; with one other.
+    let across = |camera: &Camera, joint: usize| {
+        joints.iter().map(|all| camera.project(all[joint]).expect("before it").x).sum::<f64>() / 4.0
+    };
+    let is_to_the_right = |k: &usize| across(&cameras[*k], 12) > across(&cameras[*k], 0) + 40.0;
+    let first = (0..cameras.len()).find(is_to_the_right).expect("a view from the side");
+    let second = (first + 1) % cameras.len();
+    let column = across(&cameras[first], 9) as u32;
+    let mut seen = Vec::new();
+    for frame in &frames {
+        let [one, other] = [first, second].map(|k| frame.masks[k].clone().expect("drawn"));
+        let (camera, part) = cut(&cameras[first], &one, column);
+        seen.push((camera, TakeFrame { masks: vec![Some(part), Some(other)] }));
+    }
+    let both = [seen[0].0.clone(), cameras[second].clone()];
+    let frames: Vec<TakeFrame> = seen.into_iter().map(|(_, frame)| frame).collect();
+    let fit = fit_take(&both, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
+    for fit in &fit.frames {
+        let is_cut_off = |doubt: &FitDoubt| matches!(doubt, FitDoubt::CutOff { view: 0 });
+        assert!(fit.doubts.iter().any(is_cut_off), "{:?}", fit.doubts);
+    }
 }
 
 #[test]

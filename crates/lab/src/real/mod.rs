@@ -12,6 +12,7 @@ pub mod landmarks;
 pub mod method;
 pub mod methods;
 pub mod overlap;
+pub mod per_frame;
 pub mod product;
 pub mod reference;
 pub mod report;
@@ -78,6 +79,9 @@ pub struct Arguments {
     /// Write the rows as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Write a line for each frame as CSV: its errors, the views left out and the doubts.
+    #[arg(long, value_name = "FILE")]
+    per_frame: Option<PathBuf>,
     /// Draw the found hands over every tenth frame and the five worst.
     #[arg(long, value_name = "DIR")]
     sheets: Option<PathBuf>,
@@ -103,7 +107,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if !arguments.take.is_empty() {
         folders.retain(|folder| name(folder).is_some_and(|name| arguments.take.contains(&name)));
     }
-    let (mut lines, mut notes) = (Vec::new(), Vec::new());
+    let (mut rows, mut notes) = (Reported::default(), Vec::new());
     for folder in &folders {
         let take = Take::read(folder)?;
         let reference = Reference::read(folder, &take.camera_names())?;
@@ -115,20 +119,32 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             scorer: Scorer::new(&reference),
             progress: &bar,
         };
-        evaluation.run(&mut lines, &mut notes)?;
+        evaluation.run(&mut rows, &mut notes)?;
         if let Some(constant) = evaluation.scorer.constant_joints_mm() {
             notes.push(format!("{}: best constant hand at the wrist {constant:.1} mm", take.name));
         }
     }
-    files::print(&format!("{}\n{}\n", report::table(&lines), notes.join("\n")))
+    files::print(&format!("{}\n{}\n", report::table(&rows.lines), notes.join("\n")))
+}
+
+/// What was evaluated so far.
+#[derive(Default)]
+struct Reported {
+    lines: Vec<Line>,
+    frames: Vec<per_frame::Line>,
 }
 
 impl Arguments {
-    /// Writes the rows that there are so far, so that a run that is stopped leaves them.
-    fn write_json(&self, lines: &[Line]) -> Result<()> {
-        let Some(path) = &self.json else { return Ok(()) };
-        let rows = Rows { rows: lines.iter().map(|line| &line.row).collect() };
-        files::write_whole(path, (serde_json::to_string_pretty(&rows)? + "\n").as_bytes())
+    /// Writes what there is so far, so that a run that is stopped leaves it.
+    fn write(&self, reported: &Reported) -> Result<()> {
+        if let Some(path) = &self.json {
+            let rows = Rows { rows: reported.lines.iter().map(|line| &line.row).collect() };
+            files::write_whole(path, (serde_json::to_string_pretty(&rows)? + "\n").as_bytes())?;
+        }
+        if let Some(path) = &self.per_frame {
+            files::write_whole(path, &per_frame::csv(&reported.frames)?)?;
+        }
+        Ok(())
     }
 }
 
@@ -150,7 +166,7 @@ struct Evaluation<'a> {
 
 impl Evaluation<'_> {
     /// A line for each of the cameras used, the input and the method; notes beside them.
-    fn run(&self, lines: &mut Vec<Line>, notes: &mut Vec<String>) -> Result<()> {
+    fn run(&self, reported: &mut Reported, notes: &mut Vec<String>) -> Result<()> {
         for views in subsets::of(&self.take.camera_names(), &self.arguments.cameras)? {
             let jobs = self.jobs(&views);
             let methods: Vec<MethodName> = jobs.iter().map(|job| job.method).collect();
@@ -164,8 +180,8 @@ impl Evaluation<'_> {
                     frames,
                     spoil: self.spoil(),
                 };
-                notes.extend(self.line(&sequence, &*prepared.method(*method), lines)?);
-                self.arguments.write_json(lines)?;
+                notes.extend(self.line(&sequence, &*prepared.method(*method), reported)?);
+                self.arguments.write(reported)?;
             }
         }
         Ok(())
@@ -221,7 +237,7 @@ impl Evaluation<'_> {
         &self,
         sequence: &Sequence<'_>,
         method: &dyn Method,
-        lines: &mut Vec<Line>,
+        reported: &mut Reported,
     ) -> Result<Vec<String>> {
         let cameras: Vec<String> = sequence.cameras().into_iter().map(|c| c.name).collect();
         let title =
@@ -239,7 +255,8 @@ impl Evaluation<'_> {
         };
         let views = 0..sequence.views.len();
         let reprojection_by_view = views.map(|view| percentile(&of_view(view), 50)).collect();
-        lines.push(Line { row, reprojection_by_view });
+        reported.lines.push(Line { row, reprojection_by_view });
+        reported.frames.extend(per_frame::lines(sequence, method.name(), &outcomes, &scores));
         let mut notes = refusals(&title, &outcomes);
         notes.extend(left_out(&title, &outcomes));
         if let Some(folder) = self.arguments.sheets.as_ref().filter(|_| is_drawn(&outcomes)) {

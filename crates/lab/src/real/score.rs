@@ -23,6 +23,10 @@ const GOOD_OVERLAP: f64 = 0.88;
 /// Central intervals of the normal distribution, in standard deviations: 50, 68 and 95 %.
 const INTERVALS: [f64; 3] = [0.674_490, 0.994_458, 1.959_964];
 
+/// Standard deviation of a reference's joints along each axis, mm: those of the three-camera take were fitted
+/// to a detector's landmarks, and are good to some 4 mm in space.
+const REFERENCE_MM: f64 = 2.3;
+
 /// The middle finger's knuckle: half of a hand's length from the wrist.
 const KNUCKLE: usize = 9;
 
@@ -50,7 +54,7 @@ pub struct FrameScore {
     pub overlaps: Vec<f64>,
     /// Of each joint, view after view, as a share of the hand's length.
     pub reprojection: Vec<Vec<f64>>,
-    /// Error of each joint's coordinate over its standard deviation.
+    /// Error of each joint's coordinate over its standard deviation, the reference's own added.
     pub errors_over_deviation: Vec<f64>,
     /// Distance that each joint's deviation promises, mm.
     pub promised_mm: Vec<f64>,
@@ -123,7 +127,8 @@ impl<'a> Scorer<'a> {
         score.promised_mm = deviations.map(DVec3::length).to_vec();
         for joint in 0..JOINTS {
             let Some(truth) = truth.and_then(|truth| truth[joint]) else { continue };
-            let errors = (found.joints[joint] - truth).abs() / deviations[joint];
+            let expected = deviations[joint].map(|deviation| deviation.hypot(REFERENCE_MM));
+            let errors = (found.joints[joint] - truth).abs() / expected;
             score.errors_over_deviation.extend(errors.to_array());
         }
     }

@@ -7,6 +7,7 @@ use phalanx_refine::PoseFitSettings;
 use rayon::prelude::*;
 
 use super::frame_fit::{Found, FrameFitter};
+use super::misfit::DISAGREEMENT;
 use super::observation::{Sight, fitted_hand, length_mm};
 use super::{TakeFrame, starts};
 use crate::{Error, NoProgress, Progress, Result};
@@ -62,10 +63,6 @@ pub(super) fn believing() -> PoseFitSettings {
 /// A border that is as far from the hand's as this, in pixels of a crop, begins to count less: a quarter
 /// of a finger's width. How well borders are known is found from the take.
 const NOISE: f64 = 2.0;
-
-/// A view of which more than this share is unexplained begins to count less than others: hands that are
-/// drawn with other proportions and ragged borders leave about half as much.
-pub(super) const DISAGREEMENT: f64 = 0.1;
 
 /// Hands that turn by less than this, or move by as many half hands, agree.
 const AGREES: f64 = 1.5;

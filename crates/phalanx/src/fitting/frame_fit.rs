@@ -2,9 +2,11 @@
 
 use glam::DAffine3;
 use phalanx_hand::{Dof, HandShape, Pose};
-use phalanx_refine::{Level, PoseFit, PoseFitSettings, PosePrior, Screened, SilhouetteObservation};
+use phalanx_refine::{
+    Level, PoseFit, PoseFitSettings, PosePrior, Posterior, Screened, SilhouetteObservation,
+};
 
-use super::consensus::DISAGREEMENT;
+use super::misfit;
 use super::observation::{self, Sight};
 use super::starts;
 use crate::Result;
@@ -24,8 +26,16 @@ const KEPT: usize = 3;
 /// Starts that are this near to each other lead to the same pose, radians.
 const SAME: f64 = 0.15;
 
+/// How wide what leaves a picture must be, mm: half as wide as a finger.
+const LEAVES: f64 = 8.0;
+
 /// From how far borders pull a start at first, three fingers' radii, and how many steps are taken.
 const COARSE: Level = Level { reach: 12.0, every: 4, steps: 4 };
+
+/// Many starts take one step first, and the best so many all of them (successive halving, Jamieson and
+/// Talwalkar 2016).
+const GLANCE: Level = Level { steps: 1, ..COARSE };
+const SCREENED: usize = 6;
 
 /// How frames are fitted.
 pub(super) struct FrameFitter<'a> {
@@ -46,8 +56,8 @@ pub(super) struct Found {
     pub(super) crops: Vec<Option<HandCrop>>,
     /// The views that disagree with the others and are left out.
     pub(super) left_out: Vec<bool>,
-    /// How much of what the views saw is left unexplained, 0 to ½.
-    pub(super) unexplained: f64,
+    /// How far the views together are from agreeing with it.
+    pub(super) misfit: f64,
 }
 
 impl Found {
@@ -74,10 +84,15 @@ struct Screening {
     screened: Vec<Screened>,
     crops: Vec<Option<HandCrop>>,
     evidence: Vec<SilhouetteObservation>,
-    unexplained: f64,
+    misfit: f64,
 }
 
 impl FrameFitter<'_> {
+    /// The same with something else known of poses.
+    pub(super) fn with_prior<'a>(&'a self, prior: &'a PosePrior) -> FrameFitter<'a> {
+        FrameFitter { prior, weights: self.weights.clone(), ..*self }
+    }
+
     /// Looks for a hand with nothing known but what the views saw: at every placement, in every
     /// direction about the forearm; `None` where no view has anything like a hand.
     pub(super) fn search(&self, sight: &Sight) -> Result<Option<Found>> {
@@ -114,19 +129,23 @@ impl FrameFitter<'_> {
         for guess in guesses {
             screenings.extend(self.screened(sight, guess)?);
         }
-        screenings.sort_by(|a, b| a.unexplained.total_cmp(&b.unexplained));
+        screenings.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
         screenings.truncate(GUESSES);
         let mut best: Option<Found> = None;
         for Screening { rest, screened, crops, evidence, .. } in screenings {
             let starts = distinct(&screened, STARTS);
-            let postures: Vec<Pose> = starts.iter().flat_map(starts::postures).collect();
+            let postures: Vec<Pose> = starts.iter().take(1).flat_map(starts::postures).collect();
             let Some(refined) = self.fit(&rest, &evidence, &[starts, postures].concat())? else {
                 continue;
             };
-            let unexplained = mean_unexplained(&refined.unexplained, crops.len());
-            if best.as_ref().is_none_or(|best| unexplained < best.unexplained) {
+            let misfit = self.misfit(&rest, &evidence, &refined.pose, crops.len())?;
+            if best.as_ref().is_none_or(|best| misfit < best.misfit) {
                 let left_out = vec![false; crops.len()];
-                best = Some(Found { rest, refined, crops, left_out, unexplained });
+                best = Some(Found { rest, refined, crops, left_out, misfit });
+            }
+            // A guess that views agree with needs no other beside it.
+            if misfit < 1.0 {
+                break;
             }
         }
         Ok(best)
@@ -141,8 +160,24 @@ impl FrameFitter<'_> {
         }
         let screened = self.screen(&rest, &evidence, &starts)?;
         let Some(first) = screened.first() else { return Ok(None) };
-        let unexplained = mean_unexplained(&first.unexplained, crops.len());
-        Ok(Some(Screening { rest, screened, crops, evidence, unexplained }))
+        let misfit = self.misfit(&rest, &evidence, &first.pose, crops.len())?;
+        Ok(Some(Screening { rest, screened, crops, evidence, misfit }))
+    }
+
+    /// How far `views` views together are from agreeing with a pose.
+    fn misfit(
+        &self,
+        rest: &DAffine3,
+        evidence: &[SilhouetteObservation],
+        pose: &Pose,
+        views: usize,
+    ) -> Result<f64> {
+        let of_view = |seen: &SilhouetteObservation| {
+            let agreement = self.refinement.agreement(self.hand, rest, seen, pose)?;
+            Ok(misfit::of_view(&agreement))
+        };
+        let seen: Vec<f64> = evidence.iter().map(of_view).collect::<Result<_>>()?;
+        Ok(misfit::of_views(&seen, views))
     }
 
     /// The ball that holds a hand with its wrist and arm as a frame has them.
@@ -178,6 +213,33 @@ impl FrameFitter<'_> {
         crop.evidence(&arm).ok()
     }
 
+    /// Whether what a view shows leaves its picture elsewhere than along the arm of the pose.
+    pub(super) fn leaves_picture(&self, found: &Found, view: usize) -> bool {
+        let frame = found.frame(self.hand);
+        let length = observation::length_mm(self.hand);
+        let palm = observation::palm_of(frame.translation, frame.matrix3.z_axis, length);
+        let Some(crop) = &found.crops[view] else { return false };
+        crop.exits.width_ahead_of(&palm) > LEAVES
+    }
+
+    /// How well a pose is known by the views that it was fitted to, each of the hand's proportions being known
+    /// to a standard deviation; `None` where they leave it open.
+    pub(super) fn posterior(&self, found: &Found, hand_std: &[f64]) -> Result<Option<Posterior>> {
+        // About the hand's own frame, where no angle is near the edge of its range.
+        let frame = found.frame(self.hand);
+        let evidence = self.evidence(&found.crops, &found.left_out, &frame);
+        let own = found.pose_in(&frame, self.hand);
+        let posterior =
+            self.refinement.posterior(self.hand, &frame, &evidence, &own, self.prior, hand_std);
+        match posterior {
+            Ok(posterior) => Ok(Some(posterior)),
+            Err(phalanx_refine::Error::Precision { .. } | phalanx_refine::Error::NoObservation) => {
+                Ok(None)
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
     /// A pose fitted once more, the arm cut at its wrist and some views left out: from where it is, from
     /// some other poses in its frame of rest, and from other postures of its fingers if asked for.
     pub(super) fn again(
@@ -200,9 +262,9 @@ impl FrameFitter<'_> {
         }
         let Some(refined) = self.fit(&rest, &evidence, &starts)? else { return Ok(None) };
         let used = left_out.iter().filter(|left_out| !**left_out).count();
-        let unexplained = mean_unexplained(&refined.unexplained, used);
+        let misfit = self.misfit(&rest, &evidence, &refined.pose, used)?;
         let (crops, left_out) = (found.crops.clone(), left_out.to_vec());
-        Ok(Some(Found { rest, refined, crops, left_out, unexplained }))
+        Ok(Some(Found { rest, refined, crops, left_out, misfit }))
     }
 
     /// The best fit from some starts, all of which are screened and the best few fitted fully.
@@ -212,7 +274,8 @@ impl FrameFitter<'_> {
         evidence: &[SilhouetteObservation],
         starts: &[Pose],
     ) -> Result<Option<PoseFit>> {
-        let screened = self.screen(rest, evidence, starts)?;
+        let glanced = self.screen_at(GLANCE, rest, evidence, starts)?;
+        let screened = self.screen(rest, evidence, &distinct(&glanced, SCREENED))?;
         let mut best: Option<PoseFit> = None;
         for start in distinct(&screened, KEPT) {
             let refined = match self.refinement.fit(self.hand, rest, evidence, &start, self.prior) {
@@ -235,8 +298,19 @@ impl FrameFitter<'_> {
         evidence: &[SilhouetteObservation],
         starts: &[Pose],
     ) -> Result<Vec<Screened>> {
+        self.screen_at(COARSE, rest, evidence, starts)
+    }
+
+    /// Starts after the steps of a level, the best first.
+    fn screen_at(
+        &self,
+        level: Level,
+        rest: &DAffine3,
+        evidence: &[SilhouetteObservation],
+        starts: &[Pose],
+    ) -> Result<Vec<Screened>> {
         let mut screened =
-            self.refinement.screen(self.hand, rest, evidence, starts, self.prior, COARSE)?;
+            self.refinement.screen(self.hand, rest, evidence, starts, self.prior, level)?;
         screened.sort_by(|a, b| a.energy.total_cmp(&b.energy));
         Ok(screened)
     }
@@ -249,15 +323,6 @@ pub(super) enum Postures {
     Given,
     /// Also every finger straight or folded, in all combinations.
     All,
-}
-
-/// How much of what some views saw is left unexplained, each view counting less the less it agrees; one
-/// without a border explains nothing.
-fn mean_unexplained(unexplained: &[f64], views: usize) -> f64 {
-    let limit = if views > 2 { DISAGREEMENT } else { f64::INFINITY };
-    let robust = |share: f64| share / (1.0 + share / limit);
-    let seen: f64 = unexplained.iter().map(|&share| robust(share)).sum();
-    (seen + (views - unexplained.len()) as f64 * robust(1.0)) / views.max(1) as f64
 }
 
 /// The best few poses that differ from each other.

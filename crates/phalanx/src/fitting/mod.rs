@@ -7,6 +7,8 @@
 mod borders;
 mod consensus;
 mod frame_fit;
+mod misfit;
+mod motion;
 mod observation;
 mod passes;
 mod proportions;

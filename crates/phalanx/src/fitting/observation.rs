@@ -31,6 +31,12 @@ pub(super) fn arm_of(wrist: DVec3, arm: DVec3, length: f64) -> Arm {
     Arm { cut: wrist - arm * (KNOWN_ARM * length), direction: arm }
 }
 
+/// The arm of a hand of some length and as much of its palm as is known of the arm behind the wrist: a
+/// picture that reaches as far shows all of the fingers.
+pub(super) fn palm_of(wrist: DVec3, arm: DVec3, length: f64) -> Arm {
+    Arm { cut: wrist + arm * (KNOWN_ARM * length), direction: arm }
+}
+
 /// How long a hand is from the wrist to the middle finger's tip, mm.
 pub(super) fn length_mm(hand: &HandShape) -> f64 {
     let joints = hand.pose(&Pose::REST, &DAffine3::IDENTITY).joints;

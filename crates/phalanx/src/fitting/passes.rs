@@ -1,17 +1,17 @@
-//! Passes over all frames of a take. A frame depends on the pass before alone, so that all can be fitted
-//! at once and come out the same in any order.
+//! Passes over all frames of a take.
 
 use phalanx_camera::Camera;
 use rayon::prelude::*;
 
 use super::TakeFrame;
 use super::frame_fit::{Found, FrameFitter, Postures};
+use super::motion::Motion;
 use super::observation::Sight;
-use super::views::{self, Usual};
+use super::views;
 use crate::{Progress, Result};
 
 /// How many frames before and after a frame say where it may be.
-const NEIGHBOURS: usize = 2;
+const NEIGHBOURS: usize = 1;
 
 /// All frames, each looked for near where the hand works.
 pub(super) fn first(
@@ -30,49 +30,103 @@ pub(super) fn first(
     frames.par_iter().map(search).collect()
 }
 
-/// All frames once more, each from where it was and from where its neighbours are.
+/// All frames once more, each from where it was, from where its neighbours are and from other postures. A
+/// frame depends on the pass before alone.
 pub(super) fn again(
     fitter: &FrameFitter<'_>,
     found: &[Option<Found>],
-    postures: Postures,
     progress: &dyn Progress,
 ) -> Result<Vec<Option<Found>>> {
-    progress.begin("fit each frame beside its neighbours", found.len());
-    let once = |k: usize| -> Result<Option<Found>> {
-        let fitted = match &found[k] {
-            Some(own) => {
-                let before = found[..k].iter().rev().flatten().take(NEIGHBOURS);
-                let after = found[k + 1..].iter().flatten().take(NEIGHBOURS);
-                let near: Vec<&Found> = before.chain(after).collect();
-                fitter.again(own, &own.left_out, &near, postures)?
-            }
-            None => None,
-        };
+    progress.begin("fit each frame once more", found.len());
+    let once = |k: usize| {
+        let near: Vec<&Found> = neighbours(found, k).into_iter().map(|(_, found)| found).collect();
+        let again = |own: &Found| fitter.again(own, &own.left_out, &near, Postures::All);
+        let fitted = found[k].as_ref().map(again).transpose();
         progress.step();
-        Ok(fitted)
+        Ok(fitted?.flatten())
     };
     (0..found.len()).into_par_iter().map(once).collect()
 }
 
-/// What the views of all frames usually leave unexplained, and all frames without the views that
-/// disagree.
+/// All frames from the first to the last and back, each between its neighbours as they are then, from which
+/// it is not far: what one frame tells is handed on through all that tell nothing of it.
+pub(super) fn swept(
+    fitter: &FrameFitter<'_>,
+    mut found: Vec<Option<Found>>,
+    postures: Postures,
+    progress: &dyn Progress,
+) -> Result<Vec<Option<Found>>> {
+    let Some(motion) = Motion::of(&found) else { return Ok(found) };
+    progress.begin("fit each frame between its neighbours", 2 * found.len());
+    let count = found.len();
+    let there = (0..count).map(|k| (k, postures));
+    let back = (0..count).rev().map(|k| (k, Postures::Given));
+    for (k, postures) in there.chain(back) {
+        progress.step();
+        let Some(own) = &found[k] else { continue };
+        let near = neighbours(&found, k);
+        let prior = motion.beside(fitter.prior, &near)?;
+        let near: Vec<&Found> = near.into_iter().map(|(_, found)| found).collect();
+        let fitter = fitter.with_prior(&prior);
+        found[k] = fitter.again(own, &own.left_out, &near, postures)?;
+    }
+    Ok(found)
+}
+
+/// The nearest frames before and after a frame in which a hand was found, and how many frames each is away.
+fn neighbours(found: &[Option<Found>], k: usize) -> Vec<(usize, &Found)> {
+    let of = |other: usize| Some((k.abs_diff(other), found[other].as_ref()?));
+    let before = (0..k).rev().filter_map(of).take(NEIGHBOURS);
+    before.chain((k + 1..found.len()).filter_map(of).take(NEIGHBOURS)).collect()
+}
+
+/// The frames whose views say something else than their poses, each looked for once more where the nearest
+/// frames are of which that is not so. What explains more of the views is kept.
+pub(super) fn recovered(
+    cameras: &[Camera],
+    frames: &[TakeFrame],
+    fitter: &FrameFitter<'_>,
+    found: &[Option<Found>],
+    progress: &dyn Progress,
+) -> Result<Vec<Option<Found>>> {
+    progress.begin("look for the hand where its neighbours are", found.len());
+    let is_right = |found: &Option<Found>| match found {
+        Some(found) => views::is_right(fitter, found),
+        None => Ok(false),
+    };
+    let right: Vec<bool> = found.par_iter().map(is_right).collect::<Result<_>>()?;
+    let trusted: Vec<Option<Found>> =
+        found.iter().zip(&right).map(|(found, &right)| found.clone().filter(|_| right)).collect();
+    let once = |k: usize| -> Result<Option<Found>> {
+        let near = neighbours(&trusted, k);
+        if right[k] || near.is_empty() {
+            return Ok(found[k].clone());
+        }
+        let places: Vec<_> = near.iter().map(|(_, near)| near.frame(fitter.hand)).collect();
+        let other = fitter.search_near(&Sight::of(cameras, &frames[k].masks)?, &places)?;
+        let near: Vec<&Found> = near.iter().map(|(_, found)| *found).collect();
+        let other = match &other {
+            Some(other) => fitter.again(other, &other.left_out, &near, Postures::All)?,
+            None => None,
+        };
+        progress.step();
+        let misfit = |found: &Option<Found>| found.as_ref().map_or(f64::INFINITY, |own| own.misfit);
+        Ok(if misfit(&other) < misfit(&found[k]) { other } else { found[k].clone() })
+    };
+    (0..found.len()).into_par_iter().map(once).collect()
+}
+
+/// All frames without the views that disagree.
 pub(super) fn agreeing(
     fitter: &FrameFitter<'_>,
     found: &[Option<Found>],
     progress: &dyn Progress,
-) -> Result<(Usual, Vec<Option<Found>>)> {
+) -> Result<Vec<Option<Found>>> {
     progress.begin("ask which views agree", found.len());
-    let all: Vec<&Found> = found.iter().flatten().collect();
-    let shares = |found: &&Found| -> Result<Vec<Option<f64>>> {
-        let agreements = views::agreements(fitter, found)?;
-        Ok(agreements.iter().map(|agreement| Some((*agreement)?.unexplained)).collect())
-    };
-    let shares: Vec<Vec<Option<f64>>> = all.par_iter().map(shares).collect::<Result<_>>()?;
-    let usual = Usual::of(&shares);
     let agreeing = |found: &Option<Found>| {
-        let agreeing = found.as_ref().map(|own| views::without_disagreeing(fitter, own, usual));
+        let agreeing = found.as_ref().map(|own| views::without_disagreeing(fitter, own));
         progress.step();
         agreeing.transpose()
     };
-    Ok((usual, found.par_iter().map(agreeing).collect::<Result<_>>()?))
+    found.par_iter().map(agreeing).collect()
 }

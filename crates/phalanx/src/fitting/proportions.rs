@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::consensus::evenly;
 use super::frame_fit::{Found, FrameFitter};
+use super::views;
 use crate::Result;
 
 /// Frames that the hand is learnt from, and as many that it is tested on.
@@ -36,9 +37,9 @@ impl KnownHand {
 }
 
 /// The hand learnt from half of some frames, beginning with the mean hand, if frames of the other half
-/// then fit better than with the hand that they were fitted with; else `None`. A place of the best view's
-/// border tells as much as `independent` places that err alone: so much less is the hand's energy to
-/// outweigh what is known of people's hands.
+/// then fit better than with the hand that they were fitted with; else `None`. Frames whose views contradict
+/// their poses tell nothing. A place of the best view's border tells as much as `independent` places that err
+/// alone, which says how well the hand is known.
 pub(super) fn learn(
     mean: &HandShape,
     fitter: &FrameFitter<'_>,
@@ -53,6 +54,10 @@ pub(super) fn learn(
         let start = found.pose_in(rest, fitter.hand);
         BundleFrame { observations: evidence, start, prior: fitter.prior.clone() }
     };
+    let is_right = |found: &&Found| views::is_right(fitter, found);
+    let right: Vec<bool> = found.par_iter().map(is_right).collect::<Result<_>>()?;
+    let found: Vec<&Found> =
+        found.into_iter().zip(right).filter(|(_, right)| *right).map(|(found, _)| found).collect();
     let chosen = evenly(found.len(), 2 * LEARNT_FROM);
     let frames = chosen.iter().map(|&k| frame(found[k]));
     let frames = frames.filter(|frame| !frame.observations.is_empty());
@@ -61,9 +66,7 @@ pub(super) fn learn(
         return Ok(None);
     }
     let refinement = fitter.refinement.clone();
-    let share = independent.min(1.0).sqrt();
-    let people = ShapePrior { size: share * POPULATION.size, each: share * POPULATION.each };
-    let calibration = BundleAdjustment { pose_fit: refinement, hand: people, cameras: None };
+    let calibration = BundleAdjustment { pose_fit: refinement, hand: POPULATION, cameras: None };
     let calibrated = match calibration.run(mean, rest, &seen) {
         Ok(calibrated) => calibrated,
         // What these frames leave open stays as it was.
@@ -79,7 +82,13 @@ pub(super) fn learn(
         Ok(energies.iter().sum())
     };
     let fits_better = energy(&calibrated.hand)? < energy(fitter.hand)?;
-    let std = calibrated.hand_std.iter().map(|std| std / share).collect();
+    let std = KnownHand::anyone(mean).std.into_iter().zip(&calibrated.hand_std);
+    // What the frames tell beside what is known of anyone's hand, as they err together.
+    let honest = |(anyone, fitted): (f64, &f64)| {
+        let told = fitted.powi(-2) - anyone.powi(-2);
+        (independent.min(1.0) * told.max(0.0) + anyone.powi(-2)).powf(-0.5)
+    };
+    let std = std.map(honest).collect();
     Ok(fits_better.then_some(KnownHand { shape: calibrated.hand, std }))
 }
 

@@ -3,11 +3,12 @@
 use glam::{DAffine3, DVec3};
 use phalanx_camera::Camera;
 use phalanx_hand::{Dof, JOINTS, Pose};
-use phalanx_refine::Posterior;
+use phalanx_refine::{Agreement, Posterior};
 
 use super::frame_fit::{Found, FrameFitter};
+use super::misfit;
 use super::proportions::KnownHand;
-use super::views::{self, Usual};
+use super::views;
 use crate::Result;
 
 /// A fitted frame.
@@ -23,7 +24,7 @@ pub struct FrameFit {
     pub joint_std: [f64; JOINTS],
     /// What became of each view, in the order of the cameras.
     pub views: Vec<ViewFit>,
-    /// Why the pose may be wrong; none of a pose that explains what was seen as well as is usual.
+    /// Why the pose may be wrong; none of a pose that agrees with what was seen.
     pub doubts: Vec<FitDoubt>,
     /// Whether the fit ended where the energy has a minimum.
     pub converged: bool,
@@ -57,14 +58,17 @@ pub enum FitDoubt {
     NotSeen,
     /// The views leave the pose open; its deviations are infinite.
     Open,
-    /// More of the borders is left unexplained than is usual: this share, of at most so much.
+    /// A view that was used shows something else than the pose.
     PoorFit {
-        /// Share of the borders, 0 to 1.
+        /// The view's number, in the order of the cameras.
+        view: usize,
+        /// Share of its border that the pose leaves unexplained, 0 to 1.
         unexplained: f64,
-        /// What is usual at most.
-        usual: f64,
+        /// Intersection over union of the drawn and the observed silhouette.
+        overlap: f64,
     },
-    /// Part of the hand is beyond the border of a view's picture.
+    /// Part of the hand is beyond the border of a view's picture, or the pose points another way than the
+    /// hand that leaves the picture there; and no two views show all of it.
     CutOff {
         /// The view's number, in the order of the cameras.
         view: usize,
@@ -78,7 +82,6 @@ pub(super) struct Reporter<'a> {
     pub(super) fitter: &'a FrameFitter<'a>,
     pub(super) hand: &'a KnownHand,
     pub(super) rest: DAffine3,
-    pub(super) usual: Usual,
 }
 
 impl Reporter<'_> {
@@ -87,22 +90,11 @@ impl Reporter<'_> {
         let (fitter, hand) = (self.fitter, self.fitter.hand);
         let pose = found.pose_in(&self.rest, hand);
         let joints = hand.pose(&pose, &self.rest).joints;
-        let frame = found.frame(hand);
-        let evidence = fitter.evidence(&found.crops, &found.left_out, &frame);
-        // About the hand's own frame, where no angle is near the edge of its range.
-        let own = found.pose_in(&frame, hand);
-        let known = &self.hand.std;
-        let posterior =
-            fitter.refinement.posterior(hand, &frame, &evidence, &own, fitter.prior, known);
         let mut doubts = Vec::new();
-        let posterior = match posterior {
-            Ok(posterior) => posterior,
-            Err(phalanx_refine::Error::Precision { .. }) => {
-                doubts.push(FitDoubt::Open);
-                Posterior { std: [f64::INFINITY; Dof::COUNT], joints: [f64::INFINITY; JOINTS] }
-            }
-            Err(error) => return Err(error.into()),
-        };
+        let posterior = fitter.posterior(found, &self.hand.std)?.unwrap_or_else(|| {
+            doubts.push(FitDoubt::Open);
+            Posterior { std: [f64::INFINITY; Dof::COUNT], joints: [f64::INFINITY; JOINTS] }
+        });
         let agreements = views::agreements(fitter, found)?;
         let views = agreements.iter().zip(&found.left_out).map(|(agreement, &left_out)| ViewFit {
             missing: match (agreement, left_out) {
@@ -113,14 +105,14 @@ impl Reporter<'_> {
             overlap: agreement.map(|agreement| agreement.iou),
         });
         let views: Vec<ViewFit> = views.collect();
-        let used = || (0..views.len()).filter(|&view| views[view].missing.is_none());
-        let shares = used().filter_map(|view| Some(agreements[view]?.unexplained));
-        let unexplained = shares.sum::<f64>() / used().count().max(1) as f64;
-        if unexplained > self.usual.most {
-            doubts.push(FitDoubt::PoorFit { unexplained, usual: self.usual.most });
+        for view in used(&views) {
+            let Some(agreement) = agreements[view] else { continue };
+            if misfit::of_view(&agreement) > 1.0 {
+                let Agreement { iou: overlap, unexplained } = agreement;
+                doubts.push(FitDoubt::PoorFit { view, unexplained, overlap });
+            }
         }
-        let cut_off = used().filter(|&view| !self.cameras[view].sees_all(&joints));
-        doubts.extend(cut_off.map(|view| FitDoubt::CutOff { view }));
+        doubts.extend(self.cut_off(found, &views, &joints));
         Ok(FrameFit {
             pose,
             std: posterior.std,
@@ -130,6 +122,25 @@ impl Reporter<'_> {
             doubts,
             converged: found.refined.converged,
         })
+    }
+
+    /// The views whose pictures lack part of the hand, where no two views that are used show all of it.
+    fn cut_off(
+        &self,
+        found: &Found,
+        views: &[ViewFit],
+        joints: &[DVec3; JOINTS],
+    ) -> impl Iterator<Item = FitDoubt> {
+        // Pictures may end at the wrist as they may end behind it.
+        let shows_all = |view: usize| {
+            self.cameras[view].sees_all(&joints[1..]) && !self.fitter.leaves_picture(found, view)
+        };
+        let whole = used(views).filter(|&view| shows_all(view)).count();
+        let is_cut_off =
+            |&view: &usize| views[view].missing != Some(Missing::Disagrees) && !shows_all(view);
+        let cut_off: Vec<usize> = (0..views.len()).filter(is_cut_off).collect();
+        let doubted = if whole < ENOUGH.min(views.len()) { cut_off } else { Vec::new() };
+        doubted.into_iter().map(|view| FitDoubt::CutOff { view })
     }
 
     /// A frame in which no view shows a hand, beside the nearest that does.
@@ -142,6 +153,14 @@ impl Reporter<'_> {
             ..nearest.clone()
         }
     }
+}
+
+/// So many views that show the whole hand place it in space.
+const ENOUGH: usize = 2;
+
+/// The views that were used.
+fn used(views: &[ViewFit]) -> impl Iterator<Item = usize> {
+    (0..views.len()).filter(|&view| views[view].missing.is_none())
 }
 
 /// Whether a camera's picture shows points of the world.

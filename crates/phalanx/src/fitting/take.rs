@@ -15,7 +15,7 @@ use super::passes;
 use super::proportions::{self, KnownHand};
 use super::report::{FrameFit, Reporter};
 use super::starts;
-use super::views::{self, Usual};
+use super::views;
 use crate::{Error, Progress, Result};
 
 /// What each camera saw at one time: masks in which hand is over 127, each a scaled copy of its camera's
@@ -69,7 +69,6 @@ struct Known {
     hand: KnownHand,
     /// How much each view's border counts.
     weights: Vec<f64>,
-    usual: Usual,
 }
 
 /// How often the hand is learnt, each time from frames fitted with it as it was before: a finger that was
@@ -96,31 +95,34 @@ pub fn fit_take(
     let middle = consensus::agreed(&keys, &take.hand.shape)?;
     let found =
         passes::first(cameras, frames, &take.fitter(Weights::Relative), &[middle], progress)?;
-    let found = passes::again(&take.fitter(Weights::Relative), &found, Postures::All, progress)?;
-    let (_, mut found) = passes::agreeing(&take.fitter(Weights::Relative), &found, progress)?;
+    let fitter = take.fitter(Weights::Relative);
+    let found = passes::again(&fitter, &found, progress)?;
+    let found = passes::agreeing(&fitter, &found, progress)?;
+    let mut found = passes::recovered(cameras, frames, &fitter, &found, progress)?;
     take.refinement = &believing;
     take.weigh(&found)?;
     if settings.proportions == Proportions::FromTake {
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
             let fitter = take.fitter(Weights::Relative);
             let independent = take.weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
             let learnt = proportions::learn(&take.mean, &fitter, &found, &middle, independent)?;
             let Some(learnt) = learnt else { break };
             take.hand = learnt;
             let fitter = take.fitter(Weights::Relative);
-            found = passes::again(&fitter, &found, Postures::All, progress)?;
+            let postures = if round == 0 { Postures::All } else { Postures::Given };
+            found = passes::swept(&fitter, found, postures, progress)?;
             take.weigh(&found)?;
         }
     }
     let fitter = take.fitter(Weights::Relative);
-    let found = passes::again(&fitter, &found, Postures::Given, progress)?;
-    let (usual, found) = passes::agreeing(&fitter, &found, progress)?;
+    let found = passes::swept(&fitter, found, Postures::Given, progress)?;
+    let found = passes::agreeing(&fitter, &found, progress)?;
     take.weigh(&found)?;
     let volume = VolumeEstimate::around(&middle, found.iter().flatten(), &take.hand.shape);
-    let frames = take.reports(&found, &volume.volume, usual)?;
+    let frames = take.reports(&found, &volume.volume)?;
     let forearm = settings.hand.forearm.clone();
     let hand = HandShape { forearm, ..take.hand.shape.clone() };
-    let known = Known { hand: take.hand, weights: take.weights, usual };
+    let known = Known { hand: take.hand, weights: take.weights };
     Ok(TakeFit { hand, volume, frames, known })
 }
 
@@ -130,7 +132,7 @@ pub fn fit_take(
 /// Another number of masks than cameras, or no camera that sees a hand.
 pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Result<FrameFit> {
     let (prior, refinement) = (starts::pose_prior()?, consensus::refinement());
-    let Known { hand, weights, usual } = &take.known;
+    let Known { hand, weights } = &take.known;
     let fitter = |weights| FrameFitter {
         hand: &hand.shape,
         prior: &prior,
@@ -142,9 +144,9 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
     let sight = Sight::of(cameras, &frame.masks)?;
     let found = relative.search_near(&sight, &[rest])?.ok_or(Error::NoHand)?;
     let again = relative.again(&found, &found.left_out, &[], Postures::All)?;
-    let found = views::without_disagreeing(&relative, &again.unwrap_or(found), *usual)?;
+    let found = views::without_disagreeing(&relative, &again.unwrap_or(found))?;
     let fitter = &fitter(weights.clone());
-    Reporter { cameras, fitter, hand, rest, usual: *usual }.report(&found)
+    Reporter { cameras, fitter, hand, rest }.report(&found)
 }
 
 /// A take that is being fitted.
@@ -195,15 +197,10 @@ impl<'a> Take<'a> {
     }
 
     /// The report of every frame.
-    fn reports(
-        &self,
-        found: &[Option<Found>],
-        volume: &Volume,
-        usual: Usual,
-    ) -> Result<Vec<FrameFit>> {
+    fn reports(&self, found: &[Option<Found>], volume: &Volume) -> Result<Vec<FrameFit>> {
         let rest: DAffine3 = volume.rest_frame();
         let fitter = &self.fitter(Weights::Absolute);
-        let reporter = Reporter { cameras: self.cameras, fitter, hand: &self.hand, rest, usual };
+        let reporter = Reporter { cameras: self.cameras, fitter, hand: &self.hand, rest };
         let report =
             |found: &Option<Found>| found.as_ref().map(|own| reporter.report(own)).transpose();
         let seen: Vec<Option<FrameFit>> = found.par_iter().map(report).collect::<Result<_>>()?;

@@ -34,10 +34,16 @@ pub(super) struct Covered {
 }
 
 impl Arm {
+    /// Its direction as it looks from a point: the part across the view of its cut; `None` where it is
+    /// seen more from its end than from the side.
+    pub(super) fn across(&self, from: DVec3) -> Option<DVec3> {
+        let view = (self.cut - from).normalize_or(DVec3::Z);
+        let across = self.direction.reject_from_normalized(view);
+        (across.length() > SIDEWAYS).then_some(across)
+    }
+
     /// What it covers in a camera's picture.
     pub(super) fn seen_by(&self, camera: &Camera) -> Covered {
-        let view = (self.cut - camera.centre()).normalize_or(DVec3::Z);
-        let across = self.direction - view * self.direction.dot(view);
         let width = |at: DVec3| {
             let depth = camera.extrinsics.to_camera(at).z;
             SLEEVE * camera.intrinsics.fx / depth.max(1.0)
@@ -61,7 +67,7 @@ impl Arm {
             cut: camera.project(self.cut).unwrap_or(far.0),
             far: far.0,
             widths: [width(self.cut), far.1],
-            is_half_plane: across.length() > SIDEWAYS,
+            is_half_plane: self.across(camera.centre()).is_some(),
         }
     }
 }

@@ -6,6 +6,7 @@ use phalanx_camera::{Camera, Intrinsics, PixelMap};
 use phalanx_refine::SilhouetteObservation;
 
 use super::arm::Arm;
+use super::exits::Exits;
 use crate::window::resample;
 use crate::{Error, Result};
 
@@ -37,6 +38,8 @@ pub struct HandCrop {
     inside: GrayImage,
     /// How many of the picture's pixels one of the crop's is wide.
     grain: f64,
+    /// Where what is seen leaves the picture.
+    pub(crate) exits: Exits,
 }
 
 impl HandCrop {
@@ -63,6 +66,7 @@ impl HandCrop {
         Ok(Self {
             inside: resample::inside(&to_picture, size, mask.dimensions()),
             grain: resample::pixels_aside(&to_picture, size),
+            exits: Exits::of(camera, mask),
             camera: virtual_camera,
             mask: seen,
         })
@@ -82,6 +86,7 @@ impl HandCrop {
     /// Adds what another crop onto the same ball sees.
     pub(crate) fn add(&mut self, other: &Self) {
         self.mask.iter_mut().zip(other.mask.iter()).for_each(|(own, other)| *own |= other);
+        self.exits.add(&other.exits);
     }
 
     /// What it tells of a hand whose arm is known no further than said.

@@ -4,6 +4,7 @@ mod arm;
 mod associate;
 mod crop;
 mod detect;
+pub(crate) mod exits;
 
 pub use arm::Arm;
 pub use associate::{Placement, associate};

@@ -72,6 +72,15 @@ pub(crate) struct Stop {
 /// The target of a fit that is worth its steps whatever energy they lead to.
 pub(crate) const ANY_ENERGY: f64 = f64::INFINITY;
 
+/// The damping that a descent begins with, which is next to none.
+const LEAST_DAMPING: f64 = 1e-3;
+
+/// A frame has converged where the next step promises to win less than this: half the square of the
+/// gradient's norm as the curvature scales it (the Newton decrement; Boyd and Vandenberghe 2004, § 9.5.1). The
+/// pose is then within a fifth of a standard deviation of the minimum, by its own curvature. Where longer
+/// steps won nothing it is the damped step that says so.
+const CONVERGED: f64 = 0.02;
+
 /// Descends from a state until steps win no more.
 pub(crate) fn levenberg_marquardt(
     problem: &Problem<'_>,
@@ -82,32 +91,34 @@ pub(crate) fn levenberg_marquardt(
 ) -> Result<Outcome> {
     let mut state = start;
     let mut linearisation = linearise_all(problem, &state, loss, views)?;
-    let (mut damping, mut converged, mut steps) = (1e-3, false, 0);
-    while steps < stop.steps && !converged {
+    let (mut damping, mut wins, mut steps) = (LEAST_DAMPING, true, 0);
+    while steps < stop.steps && wins {
         steps += 1;
         let Some(step) = solve(&linearisation.frames, &linearisation.shared_prior, damping) else {
-            damping = f64::max(10.0 * damping, 1e-3);
+            damping = f64::max(10.0 * damping, LEAST_DAMPING);
             continue;
         };
+        if step.predicted_decrease < CONVERGED * state.frames.len() as f64 {
+            break;
+        }
         if steps == 1 && linearisation.energy - step.predicted_decrease > stop.target_energy {
             break;
         }
         let candidate = moved(problem, &state, &step);
         match linearise_all(problem, &candidate, loss, views) {
             Ok(next) if next.energy < linearisation.energy => {
-                converged = linearisation.energy - next.energy < stop.gain * linearisation.energy;
+                wins = linearisation.energy - next.energy >= stop.gain * linearisation.energy;
                 (state, linearisation) = (candidate, next);
                 damping *= 0.3;
             }
             // A step too long: also one that led to where a camera cannot draw the hand.
-            Ok(_) | Err(Error::Render { .. }) => {
-                converged = damping > 1e4;
-                damping *= 10.0;
-            }
+            Ok(_) | Err(Error::Render { .. }) => damping *= 10.0,
             Err(error) => return Err(error),
         }
     }
-    let Linearisation { energy, frames, .. } = linearisation;
+    let Linearisation { energy, frames, shared_prior } = linearisation;
+    let left = solve(&frames, &shared_prior, damping).map(|step| step.predicted_decrease);
+    let converged = left.is_some_and(|left| left < CONVERGED * state.frames.len() as f64);
     Ok(Outcome { state, energy, frames, converged, steps })
 }
 
