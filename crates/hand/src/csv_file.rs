@@ -8,6 +8,8 @@ use crate::pose::Pose;
 
 /// The name of the column that tells which frame a row belongs to.
 const FRAME: &str = "frame";
+/// What the name of a deviation's column ends with.
+const STD: &str = "_std";
 
 /// The poses of a file, with what a reader should be told about it.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,10 +24,12 @@ pub struct PoseTable {
 
 impl PoseTable {
     /// Reads poses. Columns are found by name, absent ones are 0; a column with a dot in its
-    /// name must be one of the 28, another is passed over with a warning.
+    /// name must be one of the 28, or the deviation of one (`index.pip_std`), which is no pose; others are
+    /// passed over with a warning. So is a row in which every number is empty: a frame without a hand in the
+    /// table of a take.
     ///
     /// # Errors
-    /// Malformed CSV, an unknown or repeated column, a cell that is no finite number, no row.
+    /// Malformed CSV, an unknown or repeated column, a cell that is no finite number, no row with a pose.
     ///
     /// ```
     /// use phalanx_hand::{Dof, PoseTable};
@@ -43,8 +47,13 @@ impl PoseTable {
         let frame_column = csv.headers()?.iter().position(|name| name == FRAME);
 
         let (mut poses, mut frames) = (Vec::new(), Vec::new());
+        let mut empty = 0;
         for (row, record) in csv.records().enumerate() {
             let record = record?;
+            if columns.iter().all(|&(column, _)| record[column].is_empty()) {
+                empty += 1;
+                continue;
+            }
             let mut pose = Pose::REST;
             for &(column, dof) in &columns {
                 pose[dof] = dof.unit().from_file(number(&record[column], row + 1, dof)?);
@@ -55,6 +64,9 @@ impl PoseTable {
         if poses.is_empty() {
             return Err(Error::NoPoses { what: "row" });
         }
+        if empty > 0 {
+            warnings.push(format!("{empty} rows without a pose are left out"));
+        }
         warnings.extend(range_warning(&poses));
         Ok(Self { poses, frames: frame_column.map(|_| frames), warnings })
     }
@@ -63,21 +75,42 @@ impl PoseTable {
 /// Which column holds which number.
 fn columns(header: &csv::StringRecord, warnings: &mut Vec<String>) -> Result<Vec<(usize, Dof)>> {
     let mut columns: Vec<(usize, Dof)> = Vec::new();
+    let mut others = Vec::new();
     for (column, name) in header.iter().enumerate() {
         match name.parse::<Dof>() {
             Ok(dof) if columns.iter().any(|&(_, known)| known == dof) => {
                 return Err(Error::RepeatedColumn { column: name.to_owned() });
             }
             Ok(dof) => columns.push((column, dof)),
+            Err(_) if name == FRAME || is_deviation(name) => {}
             Err(error) if name.contains('.') => return Err(error),
-            Err(_) if name == FRAME => {}
-            Err(_) => warnings.push(format!("column '{name}' is passed over")),
+            Err(_) => others.push(name),
         }
     }
     if columns.is_empty() {
         return Err(Error::NoPoses { what: "column of a pose" });
     }
+    warnings.extend(others_warning(&others));
     Ok(columns)
+}
+
+/// Whether a column holds the deviations of one of the 28 numbers.
+fn is_deviation(name: &str) -> bool {
+    name.strip_suffix(STD).is_some_and(|dof| dof.parse::<Dof>().is_ok())
+}
+
+/// What is said of columns that hold no pose; a take has more than a hundred.
+fn others_warning(others: &[&str]) -> Option<String> {
+    const NAMED: usize = 5;
+    let named =
+        others.iter().take(NAMED).map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
+    match others.len() {
+        0 => None,
+        count if count > NAMED => {
+            Some(format!("columns passed over: {named} and {} more", count - NAMED))
+        }
+        _ => Some(format!("columns passed over: {named}")),
+    }
 }
 
 fn number(text: &str, row: usize, dof: Dof) -> Result<f64> {

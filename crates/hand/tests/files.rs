@@ -49,6 +49,26 @@ fn bad_pose_files_are_refused_by_name() {
 }
 
 #[test]
+fn the_table_of_a_take_is_read_with_deviations_and_lost_frames_left_out() {
+    let table = "frame,time,index.pip,index.pip_std,wrist_x,wrist_x_std,a,b,c\n\
+                 0,0,30,2,1,1,,,\n1,0.1,,,,,,,\n2,0.2,60,2,1,1,,,\n";
+    let table = read(table).unwrap();
+    let degrees: Vec<f64> =
+        table.poses.iter().map(|pose| pose[Dof::IndexPip].to_degrees().round()).collect();
+    assert_eq!(degrees, [30.0, 60.0]);
+    assert_eq!(table.frames, Some(vec!["0".to_owned(), "2".to_owned()]));
+    let [others, empty] = &table.warnings[..] else { panic!("{:?}", table.warnings) };
+    assert_eq!(
+        others,
+        "columns passed over: 'time', 'wrist_x', 'wrist_x_std', 'a', 'b' and 1 more"
+    );
+    assert_eq!(empty, "1 rows without a pose are left out");
+    assert!(matches!(read("index.pip_stdev\n1\n"), Err(Error::UnknownDof { .. })));
+    assert!(matches!(read("index.pip,index.dip\n1,\n"), Err(Error::BadCell { row: 1, .. })));
+    assert!(matches!(read("index.pip,index.dip\n,\n"), Err(Error::NoPoses { .. })));
+}
+
+#[test]
 fn odd_values_are_kept_with_a_warning() {
     let table = read("index.pip,index.mcp,index.abduction,note\n150,90,15,7\n").unwrap();
     assert!((table.poses[0][Dof::IndexPip].to_degrees() - 150.0).abs() < 1e-9);
