@@ -2,9 +2,11 @@
 //! and both project alike, with every lens.
 //!
 //! Installs `opencv-python-headless` from PyPI into a virtual environment under the target folder:
-//! `cargo test -p phalanx-io --test opencv -- --ignored`.
+//! `cargo test --workspace --test opencv -- --ignored`.
 
-use std::path::{Path, PathBuf};
+mod installed;
+
+use std::path::Path;
 use std::process::Command;
 
 use glam::{DVec2, DVec3};
@@ -13,6 +15,8 @@ use phalanx_io::calibration::{
     Calibration, Missing, Source, Unit, to_anipose_toml, to_opencv_yaml,
 };
 
+use installed::run;
+
 /// How far two projections may be apart, px.
 const TOLERANCE: f64 = 1e-6;
 
@@ -20,24 +24,6 @@ const TOLERANCE: f64 = 1e-6;
 const OPENCV: &str = "opencv-python-headless==5.0.0.93";
 
 const LENSES: [&str; 5] = ["brown", "rational", "prism", "tilted", "fisheye"];
-
-fn run(command: &mut Command) -> String {
-    let output = command.output().expect("python3 is installed");
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{command:?}: {error}");
-    String::from_utf8(output.stdout).expect("text")
-}
-
-/// A Python that has OpenCV.
-fn python() -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("opencv");
-    let python = folder.join("bin/python");
-    if !folder.join("bin/pip").exists() {
-        run(Command::new("python3").args(["-m", "venv"]).arg(&folder));
-    }
-    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", OPENCV]));
-    python
-}
 
 fn script(python: &Path, mode: &str, path: &Path) -> String {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/opencv.py");
@@ -74,8 +60,9 @@ fn assert_projections(cameras: &[Camera], lines: &str, what: &str) {
 #[test]
 #[ignore = "installs opencv-python-headless from PyPI"]
 fn opencv_and_we_see_alike_by_each_others_files() {
-    let python = python();
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("opencv-files");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("opencv");
+    let Some(python) = installed::python(&folder, &[OPENCV]) else { return };
+    let folder = folder.join("files");
     std::fs::create_dir_all(&folder).expect("a folder");
     script(&python, "make", &folder);
     for lens in LENSES {

@@ -50,40 +50,51 @@ async function useEveryControl(page) {
   await page.fill("#frame", "20");
 }
 
+// Draws the page anew at a size and in colours, and takes pictures of it.
+async function show(page, width, colorScheme) {
+  await page.setViewportSize({ width, height: 900 });
+  await page.emulateMedia({ colorScheme });
+  await page.evaluate(() => {
+    scrollTo(0, 0);
+    dispatchEvent(new Event("beforeprint"));
+  });
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  assert.ok(overflow <= 0, `the page is ${overflow} px too wide at ${width} px`);
+  const picture = (end) => file.replace(".html", `-${width}-${colorScheme}${end}.png`);
+  await page.screenshot({ path: picture("") });
+  if (width === 1280) await page.screenshot({ path: picture("-whole"), fullPage: true });
+}
+
+// What a checker of accessibility finds serious.
+async function inaccessible(page) {
+  const { violations } = await page.evaluate(() => window.axe.run());
+  const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+  return serious.map(({ id, nodes }) => `axe: ${id} ${nodes[0].html} ${nodes[0].failureSummary}`);
+}
+
 (async () => {
   const browser = await chromium.launch({
     executablePath: "/usr/bin/chromium",
     args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"],
   });
   const complaints = [];
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, colorScheme: "light", offline: true });
+  // Programs draw here without a graphics card, and others may be at work.
+  context.setDefaultTimeout(120_000);
+  const page = await context.newPage();
+  page.on("console", (message) => complaints.push(`${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => complaints.push(`error: ${error}`));
+  page.on("request", (request) => /^(file|data):/.test(request.url()) || complaints.push(`asks for ${request.url()}`));
+  await page.goto(`file://${path.resolve(file)}`);
+  await useEveryControl(page);
+  await page.click("h1");
+  await page.evaluate(require("fs").readFileSync(axe, "utf8"));
   for (const colorScheme of ["light", "dark"]) {
-    for (const width of [400, 1280, 2560]) {
-      const context = await browser.newContext({ viewport: { width, height: 900 }, colorScheme, offline: true });
-      // Programs draw here without a graphics card, and others may be at work.
-      context.setDefaultTimeout(120_000);
-      const page = await context.newPage();
-      page.on("console", (message) => complaints.push(`${message.type()}: ${message.text()}`));
-      page.on("pageerror", (error) => complaints.push(`error: ${error}`));
-      page.on("request", (request) => /^(file|data):/.test(request.url()) || complaints.push(`asks for ${request.url()}`));
-      await page.goto(`file://${path.resolve(file)}`);
-      await useEveryControl(page);
-      const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-      assert.ok(overflow <= 0, `the page is ${overflow} px too wide at ${width} px`);
-      await page.click("h1");
-      await page.evaluate(() => scrollTo(0, 0));
-      await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
-      const picture = (end) => file.replace(".html", `-${width}-${colorScheme}${end}.png`);
-      await page.screenshot({ path: picture("") });
-      if (width === 1280) await page.screenshot({ path: picture("-whole"), fullPage: true });
-      if (width !== 2560) {
-        await page.addScriptTag({ path: axe }).catch(() => page.evaluate(require("fs").readFileSync(axe, "utf8")));
-        const { violations } = await page.evaluate(() => window.axe.run());
-        for (const { id, impact, nodes } of violations)
-          if (impact === "serious" || impact === "critical") complaints.push(`axe: ${id} ${nodes[0].html} ${nodes[0].failureSummary}`);
-      }
-      await context.close();
-    }
+    for (const width of [400, 1280, 2560]) await show(page, width, colorScheme);
+    complaints.push(...(await inaccessible(page)));
   }
+  await page.setViewportSize({ width: 400, height: 900 });
+  complaints.push(...(await inaccessible(page)));
   await browser.close();
   assert.deepStrictEqual(complaints, []);
 })().catch((error) => {

@@ -8,6 +8,7 @@ use phalanx_hand::{JOINTS, Side};
 use phalanx_io::page::{ViewPicture, ViewPictures, view_page};
 use phalanx_io::take::{FrameView, Take};
 
+use crate::installed::{node_modules, program, run};
 use crate::sample;
 
 const HOSTILE: &str = "</script><script>throw 'script ran'</script><b>{{data}}\"'&";
@@ -72,25 +73,9 @@ fn empty_and_endless_takes_make_pages() {
 #[ignore = "installs Chromium from Debian, and playwright-core and axe-core from npm"]
 fn a_browser_runs_the_page_and_axe_finds_nothing_serious() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("browser");
-    std::fs::create_dir_all(&folder).unwrap();
-    let node = folder.join("node");
-    let run = |command: &mut Command| {
-        let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
-        let said =
-            [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
-        assert!(output.status.success(), "{command:?}\n{}", said.concat());
-    };
-    if !Command::new("chromium").arg("--version").output().is_ok_and(|o| o.status.success()) {
-        run(Command::new("apt-get").args(["update", "-qq"]));
-        run(Command::new("apt-get").args(["install", "-y", "-qq", "chromium"]));
-    }
-    if !node.join("node_modules/axe-core").exists() {
-        let packages = ["playwright-core@1", "axe-core@4"];
-        run(Command::new("npm")
-            .args(["install", "--silent", "--prefix"])
-            .arg(&node)
-            .args(packages));
-    }
+    let packages = ["playwright-core@1", "axe-core@4"];
+    let Some(modules) = node_modules(&folder, &packages) else { return };
+    let Some(()) = program("chromium", &["chromium", "fonts-dejavu-core"]) else { return };
     let pages = [
         ("drawn.html", view_page(&sample::open_close(Side::Right), "open and close", &[])),
         ("hostile.html", view_page(&hostile(80), HOSTILE, &[pictures()])),
@@ -100,6 +85,6 @@ fn a_browser_runs_the_page_and_axe_finds_nothing_serious() {
         let file = folder.join(name);
         std::fs::write(&file, page.unwrap()).unwrap();
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pages/browser.cjs");
-        run(Command::new("node").arg(script).arg(node.join("node_modules")).arg(file));
+        run(Command::new("node").arg(script).arg(&modules).arg(file));
     }
 }

@@ -1,7 +1,9 @@
 //! Readers of other tools open what is written, and read the same values. The test installs them
 //! from their registries (PyPI, npm), so it runs only when asked to:
-//! `cargo test -p phalanx-io --test readers -- --ignored`.
+//! `cargo test --workspace --test readers -- --ignored`.
 
+#[path = "../installed/mod.rs"]
+mod installed;
 #[path = "../formats/sample.rs"]
 mod sample;
 
@@ -14,6 +16,8 @@ use phalanx_io::export::{
 };
 use phalanx_io::take::{Take, json_schema, write_csv, write_json_lines, write_npz};
 
+use installed::{node_modules, run};
+
 const PYTHON: [&str; 6] =
     ["bvh==0.3", "ezc3d==1.7.2", "jsonschema", "numpy", "opensim==4.6", "pandas"];
 const NODE: &str = "gltf-validator@2.0.0-dev.3.10";
@@ -25,32 +29,6 @@ fn folder() -> PathBuf {
 
 fn script(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/readers").join(name)
-}
-
-fn run(command: &mut Command) {
-    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
-    assert!(
-        output.status.success(),
-        "{command:?}\n{}{}",
-        String::from_utf8_lossy(&output.stdout),
-        String::from_utf8_lossy(&output.stderr)
-    );
-}
-
-/// Installs what is not there yet, and gives Python.
-fn python() -> PathBuf {
-    let environment = folder().join("python");
-    let python = environment.join("bin/python");
-    let is_there = |python: &Path| {
-        let import = "import bvh, ezc3d, jsonschema, numpy, opensim, pandas";
-        let run = Command::new(python).args(["-c", import]).output();
-        run.is_ok_and(|output| output.status.success())
-    };
-    if !is_there(&python) {
-        run(Command::new("python3").args(["-m", "venv"]).arg(&environment));
-        run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(PYTHON));
-    }
-    python
 }
 
 fn write_all(take: &Take, folder: &Path) {
@@ -86,7 +64,7 @@ fn write_all(take: &Take, folder: &Path) {
 #[test]
 #[ignore = "installs opensim, ezc3d, bvh, pandas and jsonschema from PyPI"]
 fn python_s_readers_read_the_same_values() {
-    let python = python();
+    let Some(python) = installed::python(&folder(), &PYTHON) else { return };
     for (name, side) in [("right", Side::Right), ("left", Side::Left)] {
         let files = folder().join(name);
         write_all(&sample::open_close(side), &files);
@@ -100,13 +78,9 @@ fn python_s_readers_read_the_same_values() {
 fn the_validator_of_gltf_finds_nothing() {
     let files = folder().join("validated");
     write_all(&sample::open_close(Side::Left), &files);
-    let node = folder().join("node");
-    std::fs::create_dir_all(&node).unwrap();
-    if !node.join("node_modules/gltf-validator").exists() {
-        run(Command::new("npm").args(["install", "--silent", "--prefix"]).arg(&node).arg(NODE));
-    }
+    let Some(modules) = node_modules(&folder(), &[NODE]) else { return };
     run(Command::new("node")
         .arg(script("validate.cjs"))
-        .arg(node.join("node_modules/gltf-validator"))
+        .arg(modules.join("gltf-validator"))
         .arg(files.join("take.glb")));
 }
