@@ -47,6 +47,7 @@ pub use synthesis::scene::{FixedPoses, Scene, SceneSource, SceneSubset, SceneVie
 pub use synthesis::scene_describer::{
     PoseContexts, SceneDescriber, describe_each, draw_silhouette,
 };
+pub use training::maker::Maker;
 pub use training::partial::PartialTraining;
 pub use training::preset::Preset;
 pub use training::recipe::{Encoding, Training, descriptors, targets};

@@ -1,5 +1,6 @@
 //! From scenes to an estimator, whole or in shards.
 
+pub(crate) mod maker;
 pub(crate) mod partial;
 pub(crate) mod plan;
 pub(crate) mod preset;

@@ -12,12 +12,13 @@ use crate::losses::Losses;
 use crate::progress::Progress;
 use crate::synthesis::sampler::SceneSampler;
 use crate::synthesis::scene::SceneSource;
+use crate::training::maker::Maker;
 use crate::training::plan::{TrainingPlan, described_ones, targets_of};
 use crate::training::recipe::Training;
 use crate::training::shard::{BLOCK, Shard, scenes_of};
 use crate::training::statistics::TrainingStatistics;
 
-const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 5 };
+const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 6 };
 
 /// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
 /// and to [`finish`](Self::finish) the estimator. For most regressors that is sums, whose size does
@@ -33,6 +34,8 @@ pub struct PartialTraining {
     statistics: TrainingStatistics,
     /// What the error model is fitted to, if there is to be one.
     errors: Option<ErrorScenes>,
+    /// What made it, ascending.
+    makers: Vec<Maker>,
 }
 
 /// Scenes that an error model is fitted to.
@@ -66,29 +69,32 @@ impl Training {
         shard: Shard,
         progress: &dyn Progress,
     ) -> Result<PartialTraining> {
+        let mut part = self.begin(rig, hand, scenes, progress)?;
+        part.add_shard(scenes, shard, &mut |_| {}, progress)?;
+        Ok(part)
+    }
+
+    /// A part that has seen no block yet.
+    pub(crate) fn begin(
+        &self,
+        rig: &Rig,
+        hand: &HandShape,
+        scenes: &dyn SceneSource,
+        progress: &dyn Progress,
+    ) -> Result<PartialTraining> {
         rig.validate()?;
         hand.validate()?;
         let plan = self.plan(rig, hand, scenes, progress)?;
-        let columns = plan.columns()?;
-        let blocks: Vec<usize> = shard.blocks(scenes.count()).collect();
-        let statistics = TrainingStatistics::new(&plan, &columns);
-        let (losses, errors) = (Losses::default(), None);
-        let mut part =
-            PartialTraining { statistics, scenes: scenes.count(), losses, blocks, plan, errors };
-        let shown = part.blocks.iter().map(|&block| scenes_of(block, part.scenes).len()).sum();
-        progress.begin("render, describe, sum", shown);
-        for &block in &part.blocks {
-            let numbers: Vec<usize> = scenes_of(block, part.scenes).collect();
-            let descriptor = &part.plan.descriptor;
-            let described = describe_scenes(rig, scenes, &numbers, descriptor, progress)?;
-            let (kept, x) = described_ones(&numbers, described, &mut part.losses);
-            if kept.is_empty() {
-                continue;
-            }
-            let y = targets_of(scenes, &kept);
-            part.statistics.add(&part.plan, &columns, block, x, &y)?;
-        }
-        Ok(part)
+        let statistics = TrainingStatistics::new(&plan, &plan.columns()?);
+        Ok(PartialTraining {
+            plan,
+            scenes: scenes.count(),
+            blocks: Vec::new(),
+            losses: Losses::default(),
+            statistics,
+            errors: None,
+            makers: vec![Maker::here()],
+        })
     }
 }
 
@@ -96,6 +102,45 @@ impl PartialTraining {
     /// The scenes that could not be described so far.
     pub fn losses(&self) -> &Losses {
         &self.losses
+    }
+
+    /// What made the part: more than one where parts of unlike versions or machines were merged.
+    pub fn makers(&self) -> &[Maker] {
+        &self.makers
+    }
+
+    /// How many scenes it has seen, those that could not be described among them.
+    pub fn seen(&self) -> usize {
+        self.blocks.iter().map(|&block| scenes_of(block, self.scenes).len()).sum()
+    }
+
+    /// Adds the blocks of a shard that it has not seen yet, and shows itself to `keep` after each.
+    pub(crate) fn add_shard(
+        &mut self,
+        scenes: &dyn SceneSource,
+        shard: Shard,
+        keep: &mut dyn FnMut(&Self),
+        progress: &dyn Progress,
+    ) -> Result<()> {
+        let columns = self.plan.columns()?;
+        let mut blocks: Vec<usize> = shard.blocks(self.scenes).collect();
+        blocks.retain(|block| self.blocks.binary_search(block).is_err());
+        let shown = blocks.iter().map(|&block| scenes_of(block, self.scenes).len()).sum();
+        progress.begin("render, describe, sum", shown);
+        for block in blocks {
+            let numbers: Vec<usize> = scenes_of(block, self.scenes).collect();
+            let TrainingPlan { rig, descriptor, .. } = &self.plan;
+            let described = describe_scenes(rig, scenes, &numbers, descriptor, progress)?;
+            let (kept, x) = described_ones(&numbers, described, &mut self.losses);
+            if !kept.is_empty() {
+                let y = targets_of(scenes, &kept);
+                self.statistics.add(&self.plan, &columns, block, x, &y)?;
+            }
+            self.blocks.push(block);
+            self.blocks.sort_unstable();
+            keep(self);
+        }
+        Ok(())
     }
 
     /// The same part, whose estimator has no model of its errors and so no hypotheses.
@@ -130,6 +175,24 @@ impl PartialTraining {
     /// # Errors
     /// A part of another training, or one that holds a block that is here already.
     pub fn merge(&mut self, other: Self) -> Result<()> {
+        self.check_same_training(&other)?;
+        let held = |block: &&usize| self.blocks.binary_search(block).is_ok();
+        if let Some(&block) = other.blocks.iter().find(held) {
+            let both = scenes_of(block, self.scenes);
+            return Err(Error::Overlap { first: both.start, last: both.end - 1 });
+        }
+        self.statistics.merge(other.statistics)?;
+        self.blocks.extend(other.blocks);
+        self.blocks.sort_unstable();
+        self.losses.merge(other.losses);
+        self.makers.extend(other.makers);
+        self.makers.sort_unstable();
+        self.makers.dedup();
+        Ok(())
+    }
+
+    /// Refuses a part of another training.
+    fn check_same_training(&self, other: &Self) -> Result<()> {
         for (what, differ) in [
             ("their rigs", self.plan.rig != other.plan.rig),
             ("their hands", self.plan.hand != other.plan.hand),
@@ -142,16 +205,22 @@ impl PartialTraining {
                 return Err(Error::ForeignPart { what });
             }
         }
-        let held = |block: &&usize| self.blocks.binary_search(block).is_ok();
-        if let Some(&block) = other.blocks.iter().find(held) {
-            let both = scenes_of(block, self.scenes);
-            return Err(Error::Overlap { first: both.start, last: both.end - 1 });
-        }
-        self.statistics.merge(other.statistics)?;
-        self.blocks.extend(other.blocks);
-        self.blocks.sort_unstable();
-        self.losses.merge(other.losses);
         Ok(())
+    }
+
+    /// This part, to which nothing was added yet, with what an earlier run of the same training had seen of a
+    /// shard.
+    ///
+    /// # Errors
+    /// A part of another training, or one that has seen blocks beyond the shard.
+    pub(crate) fn with_seen(mut self, earlier: Self, shard: Shard) -> Result<Self> {
+        self.check_same_training(&earlier)?;
+        let blocks = shard.blocks(self.scenes);
+        if !earlier.blocks.iter().all(|block| blocks.contains(block)) {
+            return Err(Error::ForeignPart { what: "their shards" });
+        }
+        self.merge(earlier)?;
+        Ok(self)
     }
 
     /// The estimator, once all parts are merged; of a [`Trainer`](crate::Trainer)'s parts with the model

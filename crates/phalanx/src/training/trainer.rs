@@ -163,11 +163,35 @@ impl Trainer {
         shard: Shard,
         progress: &dyn Progress,
     ) -> Result<PartialTraining> {
+        self.resume_shard(rig, hand, shard, None, &mut |_| {}, progress)
+    }
+
+    /// Does one shard of the training from where an earlier run of it was broken off. `keep` is shown the
+    /// part after every block of scenes, to keep it for such a case; the result has the bytes of an
+    /// unbroken run.
+    ///
+    /// # Errors
+    /// As of [`fit`](Self::fit), and an earlier part of another training or shard.
+    pub fn resume_shard(
+        &self,
+        rig: &Rig,
+        hand: &HandShape,
+        shard: Shard,
+        earlier: Option<PartialTraining>,
+        keep: &mut dyn FnMut(&PartialTraining),
+        progress: &dyn Progress,
+    ) -> Result<PartialTraining> {
         let sampler = self.sampler();
         sampler.check()?;
         let scenes = sampler.scenes(rig, hand, self.samples);
-        let part = self.training.shard(rig, hand, &scenes, shard, progress)?;
         let errors = ErrorScenes { sampler: sampler.fresh(), count: self.error_samples };
-        Ok(part.with_error_scenes((self.error_samples > 0).then_some(errors)))
+        let begun = self.training.begin(rig, hand, &scenes, progress)?;
+        let begun = begun.with_error_scenes((self.error_samples > 0).then_some(errors));
+        let mut part = match earlier {
+            Some(earlier) => begun.with_seen(earlier, shard)?,
+            None => begun,
+        };
+        part.add_shard(&scenes, shard, keep, progress)?;
+        Ok(part)
     }
 }
