@@ -11,7 +11,9 @@ use phalanx_refine::{
     PoseFitSettings,
 };
 use phalanx_segmentation::SkinModel;
+use serde_json::json;
 
+use crate::form::Form;
 use crate::input;
 use phalanx_cli::files::Output;
 
@@ -22,7 +24,7 @@ const LEAST_FRAMES: usize = 3;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The model, as `cargo xtask train` writes it.
+    /// The model, as `phalanx train` writes it.
     #[arg(long, value_name = "FILE")]
     model: PathBuf,
     /// Pictures of one moving hand: a folder for each camera of the model, named like it, with the
@@ -38,6 +40,8 @@ pub(crate) struct Arguments {
     /// Where the hand goes.
     #[arg(long, value_name = "FILE.toml")]
     out: PathBuf,
+    #[command(flatten)]
+    form: Form,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
@@ -67,11 +71,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     output.write(calibrated.hand.to_toml().as_bytes())?;
     let overlaps: Vec<f64> = calibrated.ious.into_iter().flatten().collect();
     let mean = overlaps.iter().sum::<f64>() / overlaps.len() as f64;
-    output.say(&format!(
-        "from {found} frames; silhouettes overlap by {mean:.3}, borders are {:.2} px apart{}",
-        calibrated.boundary_rms_px,
-        if calibrated.converged { "" } else { "; it stopped before it settled" },
-    ))
+    let said = json!({
+        "hand": arguments.out, "frames": found, "left_out": names.len() - found, "overlap": mean,
+        "border_px": calibrated.boundary_rms_px, "converged": calibrated.converged,
+    });
+    arguments.form.say(&output, &said, || {
+        let settled = if calibrated.converged { "" } else { "; it stopped before it settled" };
+        format!(
+            "from {found} frames; silhouettes overlap by {mean:.3}, borders are {:.2} px apart{settled}",
+            calibrated.boundary_rms_px,
+        )
+    })
 }
 
 /// The names of the frames of the first camera's folder, at most so many, evenly spaced.

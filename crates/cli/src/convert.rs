@@ -10,7 +10,9 @@ use phalanx_io::export::{
     largest_jitter, motion_file, trc,
 };
 use phalanx_io::take::Take;
+use serde_json::json;
 
+use crate::form::Form;
 use crate::take_file;
 
 #[derive(Args)]
@@ -33,6 +35,8 @@ pub(crate) struct Arguments {
     /// Whose names the columns of .mot have: phalanx, opensim (ARMS hand) or myohand.
     #[arg(long, default_value = "phalanx")]
     names: CoordinateNames,
+    #[command(flatten)]
+    form: Form,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
@@ -47,8 +51,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         let deviations = deviation_file(&take, arguments.names, unit)?;
         Output::new(&deviations_beside(out), &inputs)?.write(deviations.as_bytes())?;
     }
-    warn(&take, arguments, &kind);
-    Ok(())
+    let told = untold(&take, arguments, &kind);
+    for text in &told {
+        eprintln!("phalanx: {text}");
+    }
+    let file = json!({ "file": out, "frames": take.frames.len(), "not_in_the_file": told });
+    arguments.form.say_json(&output, &file)
 }
 
 fn converted(take: &Take, arguments: &Arguments, kind: &str) -> Result<Vec<u8>> {
@@ -79,23 +87,25 @@ fn deviations_beside(motion: &Path) -> PathBuf {
 }
 
 /// What the file does not tell.
-fn warn(take: &Take, arguments: &Arguments, kind: &str) {
+fn untold(take: &Take, arguments: &Arguments, kind: &str) -> Vec<String> {
+    let mut told = Vec::new();
     let lost = take.frames.iter().filter(|frame| frame.estimate.is_none()).count();
     if lost > 0 && kind == "bvh" {
-        eprintln!("phalanx: {lost} frames without a hand repeat the pose before");
+        told.push(format!("{lost} frames without a hand repeat the pose before"));
     }
     let jitter = largest_jitter(take);
     if matches!(kind, "bvh" | "c3d") && jitter > 0.5 / frame_rate(take) {
-        eprintln!(
-            "phalanx: the frames are up to {:.0} ms off an even beat, which is all that .{kind} knows",
+        told.push(format!(
+            "the frames are up to {:.0} ms off an even beat, which is all that .{kind} knows",
             1000.0 * jitter
-        );
+        ));
     }
     let unconfirmed =
         arguments.names.coordinates().iter().filter(|coordinate| !coordinate.is_confirmed).count();
     if kind == "mot" && unconfirmed > 0 {
-        eprintln!(
-            "phalanx: the signs of {unconfirmed} columns are not yet confirmed on a model; compare before use"
-        );
+        told.push(format!(
+            "the signs of {unconfirmed} columns are not yet confirmed on a model; compare before use"
+        ));
     }
+    told
 }

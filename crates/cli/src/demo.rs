@@ -8,10 +8,12 @@ use glam::DVec3;
 use image::{GrayImage, ImageFormat, Rgb, RgbImage, imageops};
 use phalanx::{TakeFit, TakeFrame, TakeSettings, draw_silhouette, fit_take};
 use phalanx_camera::{Camera, Rig};
-use phalanx_cli::files::{Output, print};
+use phalanx_cli::files::Output;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_io::take::{Take, write_csv};
+use serde_json::json;
 
+use crate::form::Form;
 use crate::progress::Bar;
 use crate::recording::timeline::Moment;
 use crate::track::take;
@@ -32,6 +34,8 @@ pub(crate) struct Arguments {
     /// The folder that all goes to; it must be new or empty.
     #[arg(long, value_name = "DIR", default_value = "phalanx-demo")]
     out: PathBuf,
+    #[command(flatten)]
+    form: Form,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
@@ -62,7 +66,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     save(folder, "sheet.png", &png(&sheet(&rig.cameras, &frames, &fit)?)?)?;
     let rest = rig.volume.rest_frame();
     let truth: Vec<[DVec3; 21]> = poses.iter().map(|pose| hand.pose(pose, &rest).joints).collect();
-    print(&told(folder, &fit, &hand, error_mm(&fit, &truth)))
+    let error_mm = error_mm(&fit, &truth);
+    let said = json!({
+        "folder": folder, "frames": MOMENTS, "hand_mm": fit.hand.length_mm(),
+        "drawn_hand_mm": hand.length_mm(), "joint_error_mm": error_mm,
+    });
+    arguments.form.print(&said, || Ok(told(folder, &fit, &hand, error_mm)))
 }
 
 /// Fingers that open and close one after the other while the hand turns.

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use phalanx_cli::files::print;
 use phalanx_hand::{Dof, Unit};
 use phalanx_io::evaluation::{
     Evaluation, LEVELS, Lag, Reference, Scores, evaluate, lag, read_csv, read_motion_file, read_trc,
@@ -13,6 +12,7 @@ use phalanx_io::evaluation::{
 use phalanx_io::take::JOINT_NAMES;
 use serde_json::{Value, json};
 
+use crate::form::Form;
 use crate::take_file;
 
 #[derive(Args)]
@@ -27,9 +27,8 @@ pub(crate) struct Arguments {
     /// Take the lag that is found from the take's times before comparing.
     #[arg(long)]
     align: bool,
-    /// Print JSON.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    form: Form,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
@@ -46,11 +45,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         evaluation.matched > 0,
         "no frame of the take has a row of the reference; do their times begin alike?"
     );
-    if arguments.json {
-        let json = json(&evaluation, lag);
-        return print(&(serde_json::to_string_pretty(&json)? + "\n"));
-    }
-    print(&text(&evaluation, lag))
+    arguments.form.print(&json(&evaluation, lag), || Ok(text(&evaluation, lag)))
 }
 
 fn reference(path: &Path) -> Result<Reference> {

@@ -57,6 +57,11 @@ impl Output {
         matches!(self.place, Place::StandardOutput)
     }
 
+    /// The place as it was named.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Whether it is a file, whose name may have to tell its format.
     pub fn is_file(&self) -> bool {
         matches!(self.place, Place::File(_))

@@ -1,12 +1,16 @@
 //! The `phalanx` program.
 
 mod calibrate_hand;
+mod checkpoint;
+mod completions;
 mod convert;
 mod demo;
 mod estimate;
 mod evaluate;
+mod form;
 mod import_calibration;
 mod input;
+mod manual;
 mod no_skin;
 mod output;
 mod progress;
@@ -21,7 +25,7 @@ mod view;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 /// Joint angles of a bare hand from pictures of calibrated cameras.
 ///
@@ -60,6 +64,10 @@ enum Command {
     Report(report::Arguments),
     /// Compare a take with a reference: errors, whether deviations keep their promise, lag.
     Evaluate(evaluate::Arguments),
+    /// Print what completes the program's commands and options in a shell.
+    Completions(completions::Arguments),
+    /// Write the program's manual pages.
+    Man(manual::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -76,7 +84,7 @@ fn run(command: &Command) -> anyhow::Result<ExitCode> {
         Command::Train(arguments) => train::train(arguments)?,
         Command::Merge(arguments) => train::merge(arguments)?,
         Command::Track(arguments) => return track::run(arguments),
-        Command::Estimate(arguments) => estimate::run(arguments)?,
+        Command::Estimate(arguments) => return estimate::run(arguments),
         Command::CalibrateHand(arguments) => calibrate_hand::run(arguments)?,
         Command::Rig(command) => rig::run(command)?,
         Command::ImportCalibration(arguments) => import_calibration::run(arguments)?,
@@ -84,6 +92,8 @@ fn run(command: &Command) -> anyhow::Result<ExitCode> {
         Command::View(arguments) => view::run(arguments)?,
         Command::Report(arguments) => report::run(arguments)?,
         Command::Evaluate(arguments) => evaluate::run(arguments)?,
+        Command::Completions(arguments) => completions::run(arguments, Arguments::command())?,
+        Command::Man(arguments) => manual::run(arguments, Arguments::command())?,
     }
     Ok(ExitCode::SUCCESS)
 }

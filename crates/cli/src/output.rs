@@ -8,6 +8,16 @@ use phalanx_hand::{Dof, Unit};
 use phalanx_segmentation::{Forearm, ForearmCue};
 use serde::{Serialize, Serializer};
 
+/// A frame of several in JSON: its estimate, or why there is none.
+#[derive(Serialize)]
+struct Line<'a> {
+    frame: &'a str,
+    #[serde(flatten)]
+    report: Option<Report<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<&'a str>,
+}
+
 /// The JSON of an estimate: degrees and millimetres.
 #[derive(Serialize)]
 struct Report<'a> {
@@ -65,21 +75,43 @@ pub(crate) fn json(
     estimate: &Estimate,
     doubts: &[String],
 ) -> Result<String> {
-    let views = views(estimator, estimate).map(|(camera, forearm)| View {
-        camera,
-        forearm: match forearm.cue {
-            ForearmCue::Border => "border",
-            ForearmCue::SmoothEnd => "stump",
-        },
-        border_crossings: forearm.crossings,
-    });
-    let report = Report {
-        pose: Figures(estimate),
-        joints_mm: estimate.joints.map(<[f64; 3]>::from).to_vec(),
-        views: views.collect(),
-        doubts,
-    };
-    Ok(serde_json::to_string_pretty(&report)? + "\n")
+    Ok(serde_json::to_string_pretty(&Report::new(estimator, estimate, doubts))? + "\n")
+}
+
+/// A frame of several as a line of JSON.
+pub(crate) fn json_line(
+    estimator: &Estimator,
+    frame: &str,
+    estimated: Option<(&Estimate, &[String])>,
+    error: Option<&str>,
+) -> Result<String> {
+    let report = estimated.map(|(estimate, doubts)| Report::new(estimator, estimate, doubts));
+    Ok(serde_json::to_string(&Line { frame, report, error })? + "\n")
+}
+
+impl<'a> Report<'a> {
+    fn new(estimator: &'a Estimator, estimate: &'a Estimate, doubts: &'a [String]) -> Self {
+        let views = views(estimator, estimate).map(|(camera, forearm)| View {
+            camera,
+            forearm: match forearm.cue {
+                ForearmCue::Border => "border",
+                ForearmCue::SmoothEnd => "stump",
+            },
+            border_crossings: forearm.crossings,
+        });
+        Self {
+            pose: Figures(estimate),
+            joints_mm: estimate.joints.map(<[f64; 3]>::from).to_vec(),
+            views: views.collect(),
+            doubts,
+        }
+    }
+}
+
+/// A frame of several as a table under its name.
+pub(crate) fn named_text(frame: &str, estimate: Option<&Estimate>) -> String {
+    let table = estimate.map_or_else(|| "no estimate\n".to_owned(), text);
+    format!("frame {frame}\n{table}\n")
 }
 
 /// The estimate as a table for people.

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use phalanx_cli::files::{Output, print};
+use phalanx_cli::files::Output;
 use phalanx_io::report::{
-    FrameChoice, NamedRange, RangeOfMotion, print_page, range_table, to_csv, to_text,
+    FrameChoice, NamedRange, RangeOfMotion, print_page, range_table, to_csv, to_json, to_text,
 };
 
+use crate::form::Form;
 use crate::take_file;
 
 #[derive(Args)]
@@ -25,6 +26,8 @@ pub(crate) struct Arguments {
     /// Where the table goes, as .csv or as .html to print; else it is printed as text.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    form: Form,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
@@ -34,14 +37,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         NamedRange { name: &first.0, range: &first.1 },
         second.as_ref().map(|(name, range)| NamedRange { name, range }),
     );
-    let Some(out) = &arguments.out else { return print(&to_text(&table)) };
+    let json = to_json(&table);
+    let Some(out) = &arguments.out else {
+        return arguments.form.print(&json, || Ok(to_text(&table)));
+    };
     let inputs: Vec<&PathBuf> = std::iter::once(&arguments.take).chain(&arguments.second).collect();
     let output = Output::new(out, &inputs)?;
     match take_file::extension(out).as_str() {
-        "csv" => output.write(&to_csv(&table)?),
-        "html" => output.write(print_page(&table).as_bytes()),
+        "csv" => output.write(&to_csv(&table)?)?,
+        "html" => output.write(print_page(&table).as_bytes())?,
         _ => bail!("{}: the name must end with .csv or .html", out.display()),
     }
+    arguments.form.say_json(&output, &json)
 }
 
 fn range(path: &Path, arguments: &Arguments) -> Result<(String, RangeOfMotion)> {

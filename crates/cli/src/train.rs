@@ -12,7 +12,10 @@ use phalanx::{
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose, PoseTable};
+use serde_json::json;
 
+use crate::checkpoint::Checkpoint;
+use crate::form::Form;
 use crate::input;
 use crate::progress::Bar;
 use phalanx_cli::files::Output;
@@ -51,12 +54,15 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u32,
     /// Do the i-th of n equal parts of the work and write it to `--out`; `phalanx merge` joins the
-    /// parts to the model that a single run gives.
+    /// parts to the model that a single run gives. A run that was broken off goes on where it was, from
+    /// OUT.unfinished, if it is started again.
     #[arg(long, value_name = "i/n", value_parser = Shard::from_str)]
     shard: Option<Shard>,
     /// Where the model goes, or a shard's part.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    #[command(flatten)]
+    form: Form,
 }
 
 #[derive(Args)]
@@ -67,6 +73,8 @@ pub(crate) struct MergeArguments {
     /// Where the model goes.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    #[command(flatten)]
+    form: Form,
 }
 
 /// The presets by name.
@@ -135,9 +143,30 @@ pub(crate) fn train(arguments: &Arguments) -> Result<()> {
     }
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
     let forecast = Forecast::new(trainer.cost(rig.cameras.len(), shard), rig.cameras.len());
-    let part = trainer.fit_shard(&rig, &hand, shard, &forecast)?;
+    let mut checkpoint = Checkpoint::beside(&out);
+    let earlier = checkpoint.read();
+    if let Some(earlier) = &earlier {
+        forecast.bar.say(&format!("going on after {} scenes", earlier.seen()));
+    }
+    let mut keep = |part: &PartialTraining| checkpoint.keep(part);
+    let part = trainer.resume_shard(&rig, &hand, shard, earlier, &mut keep, &forecast);
+    let part = part.map_err(|error| checkpoint.explained(error))?;
+    let done = finish(arguments, part, &out, forecast);
+    if done.is_ok() {
+        checkpoint.remove();
+    }
+    done
+}
+
+/// Writes the model, or a shard's part.
+fn finish(
+    arguments: &Arguments,
+    part: PartialTraining,
+    out: &Output,
+    forecast: Forecast,
+) -> Result<()> {
     if arguments.shard.is_none() {
-        return save(&part.finish(&forecast)?, &out);
+        return save(&part.finish(&forecast)?, out, arguments.form);
     }
     drop(forecast);
     let lost = part.losses();
@@ -146,7 +175,8 @@ pub(crate) fn train(arguments: &Arguments) -> Result<()> {
     }
     let bytes = part.to_bytes()?;
     out.write(&bytes)?;
-    out.say(&format!("{} KiB", bytes.len().div_ceil(1024)))
+    let said = json!({ "part": arguments.out, "bytes": bytes.len(), "lost": lost.count() });
+    arguments.form.say(out, &said, || format!("{} KiB", bytes.len().div_ceil(1024)))
 }
 
 pub(crate) fn merge(arguments: &MergeArguments) -> Result<()> {
@@ -161,10 +191,21 @@ pub(crate) fn merge(arguments: &MergeArguments) -> Result<()> {
             Some(merged) => merged.merge(part).with_context(name)?,
         }
     }
+    let merged = merged.context("there is no part")?;
+    if let [first, others @ ..] = merged.makers()
+        && !others.is_empty()
+    {
+        let others: Vec<String> = others.iter().map(ToString::to_string).collect();
+        eprintln!(
+            "phalanx: the parts were made by unlike programs or machines ({first}; {}): the model may differ in its \
+             last digits from that of a single run",
+            others.join("; ")
+        );
+    }
     let bar = Bar::new();
-    let estimator = merged.context("there is no part")?.finish(&bar)?;
+    let estimator = merged.finish(&bar)?;
     drop(bar);
-    save(&estimator, &out)
+    save(&estimator, &out, arguments.form)
 }
 
 /// The rig that is asked for.
@@ -194,16 +235,16 @@ fn poses(path: &Path) -> Result<Vec<Pose>> {
 }
 
 /// Writes a model and says what it is.
-fn save(estimator: &Estimator, out: &Output) -> Result<()> {
+fn save(estimator: &Estimator, out: &Output, form: Form) -> Result<()> {
     let bytes = estimator.to_bytes()?;
     out.write(&bytes)?;
     let cameras = &estimator.rig().cameras;
     let names: Vec<&str> = cameras.iter().map(|camera| camera.name.as_str()).collect();
-    out.say(&format!(
-        "a model for the cameras {}; {} KiB",
-        names.join(", "),
-        bytes.len().div_ceil(1024),
-    ))
+    let said = json!({ "model": out.path(), "cameras": names, "bytes": bytes.len() });
+    form.say(out, &said, || {
+        let size = bytes.len().div_ceil(1024);
+        format!("a model for the cameras {}; {size} KiB", names.join(", "))
+    })
 }
 
 /// Says what a training takes: scenes and memory beforehand, and the time for drawing once some scenes

@@ -9,7 +9,7 @@ use phalanx_camera::Camera;
 ///
 /// # Errors
 /// More recordings than cameras, a name that no camera has, two recordings of one camera.
-pub(super) fn assign(cameras: &[Camera], recordings: &[String]) -> Result<Vec<Option<PathBuf>>> {
+pub(crate) fn assign(cameras: &[Camera], recordings: &[String]) -> Result<Vec<Option<PathBuf>>> {
     if let [folder] = recordings
         && cameras.len() > 1
         && let Some(found) = folders_of(cameras, Path::new(folder))

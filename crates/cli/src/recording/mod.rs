@@ -1,9 +1,9 @@
 //! What one camera recorded: a folder of pictures or a video, read frame by frame.
 
-mod assign;
+pub(crate) mod assign;
 mod ffmpeg;
 mod mp4;
-mod pictures;
+pub(crate) mod pictures;
 pub(crate) mod reader;
 pub(crate) mod source;
 pub(crate) mod timeline;

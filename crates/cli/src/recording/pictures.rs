@@ -13,13 +13,13 @@ use crate::input;
 const ENDINGS: [&str; 9] = ["png", "jpg", "jpeg", "pgm", "ppm", "bmp", "tif", "tiff", "webp"];
 
 /// A folder of pictures in the order of their names; numbers in names count as numbers.
-pub(super) struct PictureFolder {
+pub(crate) struct PictureFolder {
     paths: Vec<PathBuf>,
     stamps: Vec<Stamp>,
 }
 
 impl PictureFolder {
-    pub(super) fn open(folder: &Path) -> Result<Self> {
+    pub(crate) fn open(folder: &Path) -> Result<Self> {
         let mut paths = Vec::new();
         for entry in std::fs::read_dir(folder)? {
             let path = entry?.path();
@@ -30,6 +30,11 @@ impl PictureFolder {
         paths.sort_by(|a, b| natural_order(&stem(a), &stem(b)).then_with(|| a.cmp(b)));
         let stamps = paths.iter().map(|path| Stamp { name: stem(path), time: None }).collect();
         Ok(Self { paths, stamps })
+    }
+
+    /// The file of a frame.
+    pub(crate) fn path(&self, frame: usize) -> &Path {
+        &self.paths[frame]
     }
 }
 

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use clap::Args;
 use phalanx_camera::{Rig, ViewAngle, ViewScale};
-use phalanx_cli::files::print;
 use serde::Serialize;
+
+use crate::form::Form;
 
 /// Two views nearer than this see a hand alike, degrees: a triangulated point is then five times less
 /// sure along the view than across it (1 / tan 11°).
@@ -18,9 +19,8 @@ pub(crate) struct Arguments {
     /// The rig.
     #[arg(value_name = "RIG.toml")]
     rig: PathBuf,
-    /// Print JSON instead of a table.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    form: Form,
 }
 
 #[derive(Serialize)]
@@ -68,11 +68,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             pair.angle_deg
         );
     }
-    if arguments.json {
-        print(&(serde_json::to_string_pretty(&report)? + "\n"))
-    } else {
-        print(&report.table()?)
-    }
+    arguments.form.print(&report, || report.table())
 }
 
 impl View {

@@ -7,7 +7,9 @@ use clap::Args;
 use phalanx_camera::Rig;
 use phalanx_cli::files::Output;
 use phalanx_io::calibration::{Missing, Unit, camera_distances};
+use serde_json::json;
 
+use crate::form::Form;
 use crate::rig::calibration;
 use crate::rig::volume::{Vector, VolumeArguments};
 
@@ -36,6 +38,8 @@ pub(crate) struct Arguments {
     /// Where the rig goes.
     #[arg(long, value_name = "FILE.toml")]
     out: PathBuf,
+    #[command(flatten)]
+    form: Form,
 }
 
 fn square(text: &str) -> Result<Unit> {
@@ -50,7 +54,7 @@ fn size(text: &str) -> Result<(u32, u32)> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let Arguments { files, unit, square_mm, size, volume, volume_size, out } = arguments;
+    let Arguments { files, unit, square_mm, size, volume, volume_size, out, form } = arguments;
     let output = Output::new(out, files)?;
     let missing = Missing { unit: unit.or(*square_mm), size: *size };
     let calibration = calibration::read(files, &missing)?;
@@ -58,7 +62,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         eprintln!("note: {note}");
     }
     // Before the volume, so that a wrong unit shows.
-    for pair in camera_distances(&calibration.cameras) {
+    let distances = camera_distances(&calibration.cameras);
+    for pair in &distances {
         eprintln!("{} and {}: {:.0} mm apart", pair.first, pair.second, pair.mm);
     }
     let named = || calibration::named(files);
@@ -67,7 +72,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         volume.of(*volume_size, known, &calibration.cameras).with_context(named)?;
     let rig = Rig { cameras: calibration.cameras, volume: volume_of_hand };
     let text = rig.to_toml().with_context(named)?;
-    for scale in rig.view_scales().with_context(named)? {
+    let scales = rig.view_scales().with_context(named)?;
+    for scale in &scales {
         eprintln!(
             "{}: a hand of 190 mm is {:.0} px long in the picture, {:.0} mm away",
             scale.camera,
@@ -75,13 +81,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             scale.distance
         );
     }
-    let missing = volume.not_given();
-    if known.is_none() && !missing.is_empty() {
+    let missing = if known.is_none() { volume.not_given() } else { Vec::new() };
+    if !missing.is_empty() {
         eprintln!(
             "note: where the hand works was not given ({}) and is guessed: look at [volume] in {}",
             missing.join(", "),
             out.display()
         );
     }
-    output.write(text.as_bytes())
+    output.write(text.as_bytes())?;
+    let views = scales.iter().map(|scale| {
+        json!({ "camera": scale.camera, "distance_mm": scale.distance, "hand_px": scale.hand_px() })
+    });
+    let distances =
+        distances.iter().map(|pair| json!({ "cameras": [pair.first, pair.second], "mm": pair.mm }));
+    let said = json!({
+        "rig": out, "notes": calibration.notes, "guessed": missing,
+        "views": views.collect::<Vec<_>>(), "distances": distances.collect::<Vec<_>>(),
+    });
+    form.say_json(&output, &said)
 }

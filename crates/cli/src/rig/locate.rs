@@ -8,8 +8,10 @@ use phalanx::{VolumeEstimate, estimate_volume};
 use phalanx_camera::Rig;
 use phalanx_cli::files::Output;
 use phalanx_hand::HandShape;
+use serde_json::json;
 
 use super::check;
+use crate::form::Form;
 use crate::recording::source::{RecordingArguments, Source};
 use crate::side::SideName;
 
@@ -29,6 +31,8 @@ pub(crate) struct Arguments {
     /// Where the rig goes with its volume.
     #[arg(long, value_name = "FILE.toml")]
     out: PathBuf,
+    #[command(flatten)]
+    form: Form,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
@@ -46,11 +50,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let VolumeEstimate { volume, turns } = estimate_volume(&source.cameras, &frames, &hand)?;
     let rig = Rig { volume, ..rig };
     out.write(rig.to_toml()?.as_bytes())?;
-    let [x, y, z] = turns.map(|turn| turn.map(f64::to_degrees));
+    let turns = turns.map(|turn| turn.map(f64::to_degrees));
     let center = rig.volume.center;
-    out.say(&format!(
-        "the wrist works around {:.0}, {:.0}, {:.0} mm; the hand turns by {:.0} to {:.0}° about X, {:.0} to \
-         {:.0}° about Y and {:.0} to {:.0}° about the forearm",
-        center.x, center.y, center.z, x[0], x[1], y[0], y[1], z[0], z[1]
-    ))
+    let said = json!({
+        "rig": arguments.out, "center_mm": center.to_array(),
+        "turns_deg": { "x": turns[0], "y": turns[1], "forearm": turns[2] },
+    });
+    arguments.form.say(&out, &said, || {
+        let [x, y, z] = turns;
+        format!(
+            "the wrist works around {:.0}, {:.0}, {:.0} mm; the hand turns by {:.0} to {:.0}° about X, {:.0} \
+             to {:.0}° about Y and {:.0} to {:.0}° about the forearm",
+            center.x, center.y, center.z, x[0], x[1], y[0], y[1], z[0], z[1]
+        )
+    })
 }

@@ -246,3 +246,43 @@ fn an_estimate_that_cannot_be_drawn_is_a_doubt_on_standard_error() {
     assert!(outcome.err.starts_with(doubt), "{}", outcome.err);
     assert!(desk.path("seen.png").exists());
 }
+
+/// Several frames at once, as files and as folders, are the frames one by one.
+#[test]
+fn several_frames_are_estimated_by_one_run() {
+    let desk = Desk::new();
+    let names = ["2.png", "10.png", "note.png"];
+    for (name, closed) in names.into_iter().zip([0.2, 0.8, 0.4]) {
+        desk.draw_frame("takes", name, closed);
+    }
+    desk.write("takes/top/note.png", b"no picture");
+    let at = |name: &str| CAMERAS.map(|camera| format!("takes/{camera}/{name}"));
+    let single = |name: &str| {
+        let [side, top] = at(name);
+        json(&desk, &["--mask", &side, &top])
+    };
+    let lines = |outcome: &Outcome| -> Vec<Value> {
+        outcome.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+    };
+    for given in [&["takes"][..], &["takes/side", "takes/top"]] {
+        let outcome = desk.estimate(&[&["--mask", "--json"], given].concat());
+        assert_eq!(outcome.code, Some(1), "a frame failed: {}", outcome.err);
+        let [two, ten, note] = &lines(&outcome)[..] else { panic!("{}", outcome.out) };
+        for (line, frame) in [(two, "2"), (ten, "10")] {
+            let expected = single(&format!("{frame}.png"));
+            assert_eq!((&line["frame"], &line["pose"]), (&frame.into(), &expected["pose"]));
+        }
+        assert!(note["pose"].is_null() && note["error"].as_str().unwrap().contains("note.png"));
+        assert!(outcome.err.contains("phalanx: frame note: "), "{}", outcome.err);
+    }
+    let files = names[..2].iter().flat_map(|name| at(name)).collect::<Vec<_>>();
+    let files: Vec<&str> = ["--mask"].into_iter().chain(files.iter().map(String::as_str)).collect();
+    let table = well(desk.estimate(&files));
+    assert!(table.starts_with("frame 1\nthumb") && table.contains("\n\nframe 2\nthumb"), "{table}");
+    let outcome = desk.estimate(&["--mask", "takes", "--overlay", "seen.png"]);
+    assert_eq!(outcome.code, Some(2));
+    assert!(outcome.err.contains("--overlay draws one frame; 3 are given"), "{}", outcome.err);
+    std::fs::remove_file(desk.path("takes/side/2.png")).unwrap();
+    let outcome = desk.estimate(&["--mask", "--json", "takes"]);
+    assert!(outcome.out.contains("camera 'side' has no picture of this frame"), "{}", outcome.out);
+}

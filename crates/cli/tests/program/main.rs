@@ -3,6 +3,7 @@
 mod calibrations;
 mod desk;
 mod estimates;
+mod manuals;
 mod outputs;
 mod refinements;
 mod refusals;

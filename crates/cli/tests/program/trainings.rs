@@ -1,5 +1,7 @@
 //! Models that the program trains by itself.
 
+use std::process::Command;
+
 use image::GrayImage;
 use phalanx::{draw_silhouette, working_camera};
 use phalanx_camera::Rig;
@@ -60,13 +62,44 @@ fn parts_are_merged_to_the_model_of_a_single_run() {
         let outcome = train(&folder, arguments);
         assert_eq!(outcome.code, Some(0), "{}", outcome.err);
     }
-    let outcome = run(folder.path(), ["merge", "part", "--out", "merged"]);
+    let outcome = run(folder.path(), ["merge", "part", "--out", "merged", "--json"]);
     assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    let said: Value = serde_json::from_str(&outcome.out).unwrap();
+    assert_eq!((&said["model"], &said["cameras"][0]), (&"merged".into(), &"top".into()));
     let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
     assert!(read("whole") == read("merged"));
     let outcome = run(folder.path(), ["merge", "part", "part", "--out", "twice"]);
     assert_eq!(outcome.code, Some(2));
     assert!(outcome.err.contains("part: two parts both hold samples 0 to 149"), "{}", outcome.err);
+}
+
+/// Killed with what is done kept beside the output, and started again.
+#[test]
+fn a_killed_training_goes_on_to_the_same_bytes() {
+    let folder = TempDir::new().unwrap();
+    let longer = ["train", "--preset", "fast", "--samples", "2500", "--cameras", "top", "--out"];
+    let kept = folder.path().join("hand.unfinished");
+    let mut program = Command::new(env!("CARGO_BIN_EXE_phalanx"));
+    let mut killed = program.current_dir(folder.path()).args(longer).arg("hand").spawn().unwrap();
+    while !kept.exists() && killed.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    assert!(kept.exists() && !folder.path().join("hand").exists());
+
+    let other = run(folder.path(), longer.iter().chain(&["hand", "--seed", "1"]));
+    assert_eq!(other.code, Some(2), "{}", other.err);
+    assert!(other.err.contains("hand.unfinished: an unfinished training"), "{}", other.err);
+    let outcome = run(folder.path(), longer.iter().chain(&["hand"]));
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    assert!(outcome.err.contains("going on after "), "{}", outcome.err);
+    assert!(!kept.exists());
+    std::fs::write(folder.path().join("whole.unfinished"), b"no part").unwrap();
+    let whole = run(folder.path(), longer.iter().chain(&["whole"]));
+    assert!(whole.err.contains("whole.unfinished: ") && whole.code == Some(0), "{}", whole.err);
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    assert!(read("hand") == read("whole"));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use phalanx_hand::{Digit, Dof};
 use crate::take::{PoseEstimate, Take};
 
 pub(crate) use render::short;
-pub use render::{print_page, to_csv, to_text};
+pub use render::{print_page, to_csv, to_json, to_text};
 pub use table::{NamedRange, Row, Table, range_table};
 
 /// The angles of a report: the 20 of the digits and the two of the wrist.

@@ -1,5 +1,7 @@
 //! The table of a report as text, as CSV, and as a page to print.
 
+use serde_json::json;
+
 use super::Measured;
 use super::table::{COLUMNS, Row, Table};
 use crate::Result;
@@ -71,6 +73,26 @@ pub fn to_csv(table: &Table) -> Result<Vec<u8>> {
         csv.write_record(row).map_err(|error| unwritten(&error))?;
     }
     csv.into_inner().map_err(|error| unwritten(&error))
+}
+
+/// The table as JSON: its `notes`, the `unit` (`deg`), and `rows`, each with its `angle` and for each of the
+/// `takes` (and the difference of two) its cells by name, a `value` and its `std`; null where there is none.
+pub fn to_json(table: &Table) -> serde_json::Value {
+    let number = |cell: Measured| json!({ "value": cell.value.to_degrees(), "std": cell.std.map(f64::to_degrees) });
+    let group = |(name, cells): (&String, &[Option<Measured>; COLUMNS.len()])| {
+        let cells = COLUMNS.iter().zip(cells).map(|(column, cell)| {
+            ((*column).to_owned(), cell.map_or(serde_json::Value::Null, number))
+        });
+        let mut group: serde_json::Map<_, _> = cells.collect();
+        group.insert("of".to_owned(), name.as_str().into());
+        group
+    };
+    let row = |Row { name, cells }: &Row| {
+        let groups: Vec<_> = table.groups.iter().zip(cells).map(group).collect();
+        json!({ "angle": name, "groups": groups })
+    };
+    let rows: Vec<_> = table.rows.iter().map(row).collect();
+    json!({ "notes": table.notes, "unit": "deg", "rows": rows })
 }
 
 /// The table as a page to print: one HTML file, no script, nothing from elsewhere.

@@ -1,8 +1,11 @@
 //! `phalanx estimate`.
 
-use std::path::{Path, PathBuf};
+mod stills;
 
-use anyhow::{Result, bail};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Result, bail, ensure};
 use clap::Args;
 use image::{DynamicImage, RgbImage, imageops};
 use phalanx::{
@@ -16,13 +19,16 @@ use phalanx_segmentation::{Silhouette, SkinModel};
 use crate::input::{self, Crop};
 use crate::{no_skin, output};
 use phalanx_cli::files::{Output, print};
+use stills::{Still, stills};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The model, as `cargo xtask train` writes it.
+    /// The model, as `phalanx train` writes it.
     #[arg(long, value_name = "FILE")]
     model: PathBuf,
-    /// One picture per camera, in the order in which the model was trained.
+    /// One picture per camera, in the order in which the model was trained; of several frames all pictures
+    /// of the first, then of the second, and so on. Or a folder per camera (or one that holds them, named
+    /// like the cameras), in which the pictures of one frame have one name.
     #[arg(required = true, value_name = "IMAGE")]
     images: Vec<PathBuf>,
     /// The pictures are silhouettes: brighter than 127 is hand.
@@ -37,35 +43,52 @@ pub(crate) struct Arguments {
     /// Look at this window of every picture only, px.
     #[arg(long, value_name = "X,Y,W,H")]
     crop: Option<Crop>,
-    /// Print JSON.
+    /// Print JSON; of several frames JSON Lines, an object a frame.
     #[arg(long)]
     json: bool,
-    /// Draw what was seen and estimated over the pictures, side by side. With `-` it goes to standard
-    /// output, and the estimate to standard error.
+    /// Draw what was seen and estimated over the pictures of a frame, side by side. With `-` it goes to
+    /// standard output, and the estimate to standard error.
     #[arg(long, value_name = "FILE.png")]
     overlay: Option<PathBuf>,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+/// What every frame is estimated with.
+struct Setup<'a> {
+    arguments: &'a Arguments,
+    estimator: Estimator,
+    hand: HandShape,
+}
+
+/// What is known of a frame, and the pictures that tell it.
+struct Answer {
+    estimate: Estimate,
+    doubts: Vec<String>,
+    pictures: Vec<DynamicImage>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let overlay_to = overlay_output(arguments)?;
     let estimator = input::model(&arguments.model)?;
-    let pictures = arguments.images.iter().map(|path| input::picture(path, arguments.crop));
-    let pictures = pictures.collect::<Result<Vec<_>>>()?;
-
-    let mut workspace = Workspace::default();
-    let estimate = if arguments.mask {
-        of_masks(&estimator, &arguments.images, &pictures, &mut workspace)?
-    } else {
-        of_photographs(&estimator, &pictures, &mut workspace)?
-    };
-    let mut doubts = output::doubts(&estimator, &estimate);
     let hand = arguments.hand.as_deref().map(input::hand).transpose()?;
     let hand = hand.unwrap_or_else(|| estimator.hand().clone());
-    let estimate =
-        if arguments.refine { refine(&estimator, &hand, estimate, &mut doubts)? } else { estimate };
+    let stills = stills(&estimator.rig().cameras, &arguments.images)?;
+    let setup = Setup { arguments, estimator, hand };
+    match (&stills[..], overlay_to) {
+        ([], _) => bail!("there is no picture in the folders"),
+        ([still], overlay_to) => one(&setup, still, overlay_to).map(|()| ExitCode::SUCCESS),
+        (_, Some(_)) => bail!("--overlay draws one frame; {} are given", stills.len()),
+        (stills, None) => several(&setup, stills),
+    }
+}
+
+/// Estimates a frame, prints it and draws what is asked for.
+fn one(setup: &Setup<'_>, still: &Still, overlay_to: Option<Output>) -> Result<()> {
+    let Setup { arguments, estimator, hand } = setup;
+    let answer = setup.answer(still, &mut Workspace::default())?;
+    let Answer { estimate, mut doubts, pictures } = answer;
     if let Some(output) = &overlay_to {
         // The picture is a by-product: without it the estimate is as good.
-        let drawn = overlay(&estimator, &hand, &estimate, &pictures, &mut doubts);
+        let drawn = overlay(estimator, hand, &estimate, &pictures, &mut doubts);
         if let Err(error) = drawn.and_then(|picture| output.write_png(&picture)) {
             doubts.push(format!("there is no overlay: {error:#}"));
         }
@@ -74,7 +97,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         eprintln!("phalanx: {doubt}");
     }
     let result = if arguments.json {
-        output::json(&estimator, &estimate, &doubts)?
+        output::json(estimator, &estimate, &doubts)?
     } else {
         output::text(&estimate)
     };
@@ -83,6 +106,57 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         return Ok(());
     }
     print(&result)
+}
+
+/// Estimates frames one after the other and prints each as soon as it is known. What fails is named, and
+/// the others go on.
+fn several(setup: &Setup<'_>, stills: &[Still]) -> Result<ExitCode> {
+    let mut workspace = Workspace::default();
+    let mut failed = 0;
+    for still in stills {
+        let name = &still.name;
+        let answer = setup.answer(still, &mut workspace);
+        let (doubts, error) = match &answer {
+            Ok(answer) => (&answer.doubts[..], None),
+            Err(error) => (&[][..], Some(format!("{error:#}"))),
+        };
+        for said in doubts.iter().chain(&error) {
+            eprintln!("phalanx: frame {name}: {said}");
+        }
+        failed += usize::from(error.is_some());
+        let estimated = answer.as_ref().map(|answer| (&answer.estimate, doubts)).ok();
+        print(&if setup.arguments.json {
+            output::json_line(&setup.estimator, name, estimated, error.as_deref())?
+        } else {
+            output::named_text(name, estimated.map(|(estimate, _)| estimate))
+        })?;
+    }
+    ensure!(failed < stills.len(), "none of the {failed} frames could be estimated");
+    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+impl Setup<'_> {
+    fn answer(&self, still: &Still, workspace: &mut Workspace) -> Result<Answer> {
+        let Self { arguments, estimator, hand } = self;
+        let cameras = &estimator.rig().cameras;
+        if let Some(view) = still.paths.iter().position(Option::is_none) {
+            bail!("camera '{}' has no picture of this frame", cameras[view].name);
+        }
+        let paths: Vec<PathBuf> = still.paths.iter().flatten().cloned().collect();
+        let pictures = paths.iter().map(|path| input::picture(path, arguments.crop));
+        let pictures = pictures.collect::<Result<Vec<_>>>()?;
+        let estimate = if arguments.mask {
+            of_masks(estimator, &paths, &pictures, workspace)?
+        } else {
+            of_photographs(estimator, &pictures, workspace)?
+        };
+        let mut doubts = output::doubts(estimator, &estimate);
+        let estimate = match arguments.refine {
+            true => refine(estimator, hand, estimate, &mut doubts)?,
+            false => estimate,
+        };
+        Ok(Answer { estimate, doubts, pictures })
+    }
 }
 
 /// Where the overlay goes, if one is asked for.

@@ -1,0 +1,59 @@
+//! The frames that are estimated, each on its own.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use phalanx_camera::Camera;
+
+use crate::recording::assign::assign;
+use crate::recording::pictures::PictureFolder;
+use crate::recording::timeline::{Moment, Timeline};
+use crate::recording::{Recording, Stamp};
+
+/// A frame: a picture of each camera.
+pub(super) struct Still {
+    /// What the frame is called where there are several.
+    pub(super) name: String,
+    /// The cameras' pictures, in their order; `None` of a camera that has none of this frame.
+    pub(super) paths: Vec<Option<PathBuf>>,
+}
+
+/// The frames of what was given: of files a picture per camera, frame after frame; of folders the pictures
+/// that have one name.
+///
+/// # Errors
+/// A folder that cannot be read or is no camera's.
+pub(super) fn stills(cameras: &[Camera], given: &[PathBuf]) -> Result<Vec<Still>> {
+    if given.iter().all(|path| path.is_dir()) {
+        return in_folders(cameras, given);
+    }
+    // Another number of pictures than cameras is the estimator's to refuse.
+    let each = if given.len().is_multiple_of(cameras.len()) { cameras.len() } else { given.len() };
+    let still = |(number, paths): (usize, &[PathBuf])| Still {
+        name: (number + 1).to_string(),
+        paths: paths.iter().cloned().map(Some).collect(),
+    };
+    Ok(given.chunks(each).enumerate().map(still).collect())
+}
+
+fn in_folders(cameras: &[Camera], given: &[PathBuf]) -> Result<Vec<Still>> {
+    let given: Vec<String> = given.iter().map(|path| path.display().to_string()).collect();
+    let mut folders = Vec::new();
+    for (camera, folder) in cameras.iter().zip(assign(cameras, &given)?) {
+        let folder =
+            folder.with_context(|| format!("there is no folder for camera '{}'", camera.name))?;
+        let name = || folder.display().to_string();
+        folders.push(PictureFolder::open(&folder).with_context(name)?);
+    }
+    let stamps: Vec<&[Stamp]> = folders.iter().map(|folder| folder.stamps()).collect();
+    let still = |moment: Moment| Still {
+        paths: moment
+            .frames
+            .iter()
+            .zip(&folders)
+            .map(|(frame, folder)| frame.map(|frame| folder.path(frame).to_owned()))
+            .collect(),
+        name: moment.name,
+    };
+    Ok(Timeline::new(&stamps).moments.into_iter().map(still).collect())
+}
