@@ -5,6 +5,7 @@ mod checkpoint;
 mod completions;
 mod convert;
 mod demo;
+mod doctor;
 mod estimate;
 mod evaluate;
 mod form;
@@ -64,6 +65,8 @@ enum Command {
     Report(report::Arguments),
     /// Compare a take with a reference: errors, whether deviations keep their promise, lag.
     Evaluate(evaluate::Arguments),
+    /// Say what works and what is wrong: the program, a rig, a model, a recording.
+    Doctor(doctor::Arguments),
     /// Print what completes the program's commands and options in a shell.
     Completions(completions::Arguments),
     /// Write the program's manual pages.
@@ -92,6 +95,7 @@ fn run(command: &Command) -> anyhow::Result<ExitCode> {
         Command::View(arguments) => view::run(arguments)?,
         Command::Report(arguments) => report::run(arguments)?,
         Command::Evaluate(arguments) => evaluate::run(arguments)?,
+        Command::Doctor(arguments) => return doctor::run(arguments),
         Command::Completions(arguments) => completions::run(arguments, Arguments::command())?,
         Command::Man(arguments) => manual::run(arguments, Arguments::command())?,
     }

@@ -24,6 +24,12 @@ pub enum Error {
         /// A place that the window would show, px of the picture.
         pixel: DVec2,
     },
+    /// A segmentation that says nothing of a camera's pictures.
+    #[error("camera '{camera}': nothing says how to tell the hand from the rest of its pictures")]
+    NoSegmenter {
+        /// The camera's name.
+        camera: String,
+    },
     /// No camera sees anything like a hand, in any frame.
     #[error("no camera sees anything like a hand; are the masks of a hand, over 127?")]
     NoHand,

@@ -36,6 +36,7 @@ pub use global_pose::{GlobalStart, initial_global};
 pub use images::decode::decode_picture;
 pub use images::overlay::{draw_overlay, draw_window_overlay, working_window};
 pub use images::picture::{Picture, Segmenter, mask_from, photograph_from};
+pub use images::segmentation_file::Segmentation;
 pub use localize::{Arm, BoundingSphere, Detections, HandCrop, Placement, associate};
 pub use losses::{LossReason, Losses};
 pub use progress::{NoProgress, Progress};

@@ -10,15 +10,15 @@ use super::assign::assign;
 use super::reader::{Pictures, Reader};
 use super::timestamps;
 
-#[derive(Args)]
+#[derive(Args, Default)]
 pub(crate) struct RecordingArguments {
     /// One recording per camera, in the order of the rig or as CAMERA=PATH: a folder of pictures, one a
     /// frame, or a video. One folder that holds them all, named like the cameras, will do.
     #[arg(required = true, value_name = "RECORDING")]
-    recordings: Vec<String>,
+    pub(crate) recordings: Vec<String>,
     /// The pictures are masks: brighter than 127 is hand.
     #[arg(long)]
-    mask: bool,
+    pub(crate) mask: bool,
     /// When the frames were taken: CSV with the columns cam_id and frame_time, s.
     #[arg(long, value_name = "FILE.csv")]
     timestamps: Option<PathBuf>,

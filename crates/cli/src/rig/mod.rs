@@ -5,6 +5,7 @@ pub(crate) mod check;
 mod export;
 mod import;
 mod locate;
+mod simulation;
 pub(crate) mod volume;
 
 use anyhow::Result;

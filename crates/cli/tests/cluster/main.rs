@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::SystemTime;
 
-use installed::run;
 use slurm::Slurm;
 use work::Work;
 

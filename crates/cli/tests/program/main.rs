@@ -2,6 +2,7 @@
 
 mod calibrations;
 mod desk;
+mod doctors;
 mod estimates;
 mod manuals;
 mod outputs;

@@ -4,3 +4,4 @@ pub(crate) mod decode;
 mod jpeg;
 pub(crate) mod overlay;
 pub(crate) mod picture;
+pub(crate) mod segmentation_file;

@@ -2,6 +2,7 @@
 
 use image::{DynamicImage, GrayImage, RgbImage};
 use phalanx_segmentation::{AdaptedSkin, BackgroundModel, PlainBackground, SkinModel};
+use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 
@@ -82,7 +83,7 @@ fn varying_alpha(picture: &DynamicImage) -> Option<Vec<u8>> {
 }
 
 /// How the hand is told from the rest of a photograph.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Segmenter {
     /// By the colour of skin (§ 2 of the paper), adapted to each picture.
     Skin(SkinModel),

@@ -1,0 +1,129 @@
+//! `phalanx doctor` and `phalanx rig check --simulate`.
+
+use std::process::Command;
+
+use phalanx_camera::Rig;
+use serde_json::Value;
+
+use crate::desk::{Desk, Outcome, run};
+
+fn doctor(desk: &Desk, arguments: &[&str]) -> (Option<i32>, Value) {
+    let outcome = run(desk.folder(), ["doctor", "--json"].iter().chain(arguments));
+    assert!(!outcome.out.is_empty(), "{}", outcome.err);
+    (outcome.code, serde_json::from_str(&outcome.out).unwrap())
+}
+
+/// The findings in a state, each as what it is of and what it says.
+fn in_state(report: &Value, state: &str) -> Vec<String> {
+    let findings = report["findings"].as_array().unwrap().iter();
+    let found = findings.filter(|finding| finding["state"] == state);
+    found.map(|finding| format!("{}: {}", finding["what"], finding["text"])).collect()
+}
+
+/// A desk with eight frames of a moving hand before both cameras.
+fn recorded() -> Desk {
+    let desk = Desk::new();
+    desk.write_rig("rig.toml");
+    for frame in 0..8 {
+        desk.draw_frame(
+            "take",
+            &format!("{frame}.png"),
+            0.5 - 0.5 * (0.9 * f64::from(frame)).cos(),
+        );
+    }
+    desk
+}
+
+#[test]
+fn nothing_given_says_what_is_there_and_where_to_begin() {
+    let desk = Desk::new();
+    let outcome = run(desk.folder(), ["doctor"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    assert!(outcome.out.starts_with("good    phalanx"), "{}", outcome.out);
+    assert!(outcome.out.contains("\nnext: phalanx rig import "), "{}", outcome.out);
+    let mut without_path = Command::new(env!("CARGO_BIN_EXE_phalanx"));
+    let outcome: Outcome = without_path.arg("doctor").env("PATH", "").output().unwrap().into();
+    assert!(outcome.out.contains("doubt   ffmpeg   it is not on the path"), "{}", outcome.out);
+}
+
+#[test]
+fn what_fits_together_is_good_and_leads_on() {
+    let desk = recorded();
+    let (code, report) =
+        doctor(&desk, &["--rig", "rig.toml", "--model", "model", "take", "--mask"]);
+    assert_eq!(code, Some(0), "{report:#}");
+    assert_eq!(report["next"], "phalanx track --rig rig.toml take --mask --out take.csv");
+    let good = in_state(&report, "good").join("\n");
+    for part in
+        ["8 moments by 2 cameras", "the same in the rig and the model", "overlaps what it sees"]
+    {
+        assert!(good.contains(part), "no '{part}' in {good}");
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_broken_by_name() {
+    let desk = recorded();
+    let rig = String::from_utf8(desk.read("rig.toml")).unwrap();
+    let mut moved = Rig::from_toml(&rig).unwrap();
+    moved.cameras[1].extrinsics.translation.x += 40.0;
+    desk.write("moved.toml", moved.to_toml().unwrap().as_bytes());
+    let (code, report) = doctor(&desk, &["--rig", "moved.toml", "--model", "model"]);
+    assert_eq!(code, Some(2));
+    let broken = in_state(&report, "broken");
+    assert!(broken.len() == 1 && broken[0].contains("camera 'top'"), "{broken:?}");
+    assert!(
+        broken[0].contains("(40.0 mm apart); train again"),
+        "{broken:?}"
+    );
+    assert!(report["next"].as_str().unwrap().contains("first camera 'top'"), "{report:#}");
+
+    let mut renamed = Rig::from_toml(&rig).unwrap();
+    renamed.cameras[0].name = "left".to_owned();
+    desk.write("renamed.toml", renamed.to_toml().unwrap().as_bytes());
+    desk.save("take/top/3.png", &image::GrayImage::new(40, 90).into());
+    let arguments = ["--rig", "renamed.toml", "--model", "model", "take", "--mask"];
+    let (code, report) = doctor(&desk, &arguments);
+    assert_eq!(code, Some(2));
+    let broken = in_state(&report, "broken").join("\n");
+    assert!(broken.contains("the model knows it, the rig does not"), "{broken}");
+    assert!(broken.contains("is it turned or cropped?"), "{broken}");
+
+    let (code, report) = doctor(&desk, &["--rig", "nowhere.toml", "--model", "rig.toml"]);
+    assert_eq!((code, in_state(&report, "broken").len()), (Some(2), 2), "{report:#}");
+}
+
+/// A camera of three that stands elsewhere than the calibration says is told from the two others.
+#[test]
+fn a_camera_that_contradicts_the_others_is_named() {
+    let desk = Desk::new();
+    let demo = run(desk.folder(), ["demo", "--json"]);
+    assert_eq!(demo.code, Some(0), "{}", demo.err);
+    let rig = String::from_utf8(desk.read("phalanx-demo/rig.toml")).unwrap();
+    let mut moved = Rig::from_toml(&rig).unwrap();
+    let turn = glam::DMat3::from_rotation_y(0.12);
+    let camera = &mut moved.cameras[1].extrinsics;
+    (camera.rotation, camera.translation) = (turn * camera.rotation, turn * camera.translation);
+    desk.write("moved.toml", moved.to_toml().unwrap().as_bytes());
+    let (code, report) =
+        doctor(&desk, &["--rig", "moved.toml", "phalanx-demo/recording", "--mask"]);
+    assert_eq!(code, Some(2), "{report:#}");
+    let broken = in_state(&report, "broken");
+    assert_eq!(broken.len(), 1, "{broken:?}");
+    assert!(broken[0].contains(&moved.cameras[1].name) && broken[0].contains("it contradicts"));
+}
+
+#[test]
+fn a_simulation_says_what_to_expect_of_a_rig() {
+    let desk = Desk::new();
+    desk.write_rig("rig.toml");
+    let outcome = run(desk.folder(), ["rig", "check", "rig.toml", "--simulate", "--json"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    let report: Value = serde_json::from_str(&outcome.out).unwrap();
+    let angles = report["simulation"]["angles"].as_array().unwrap();
+    assert_eq!(angles.len(), 22);
+    for angle in angles {
+        let [std, error] = ["std_deg", "error_deg"].map(|name| angle[name].as_f64().unwrap());
+        assert!(std > 0.0 && std < 90.0 && error < 45.0, "{angle}");
+    }
+}
