@@ -4,17 +4,16 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use image::DynamicImage;
-use phalanx::{Estimator, Picture, Refiner, Segmenter, Workspace, mask_from, photograph_from};
+use phalanx::{Estimator, Picture, Refiner, Workspace};
 use phalanx_refine::{
     BundleAdjustment, BundleFrame, CameraMotion, ExtrinsicsPrior, NuisanceParameters,
     PoseFitSettings,
 };
-use phalanx_segmentation::SkinModel;
 use serde_json::json;
 
 use crate::form::Form;
 use crate::input;
+use crate::segment::{Pictures, Prepared, SegmentArguments};
 use phalanx_cli::files::Output;
 
 /// More frames tell little more, and each takes its time.
@@ -31,9 +30,8 @@ pub(crate) struct Arguments {
     /// same file names in each. Of more than 30 frames 30 are taken, evenly spaced.
     #[arg(long, value_name = "DIR")]
     frames: PathBuf,
-    /// The pictures are silhouettes: brighter than 127 is hand.
-    #[arg(long)]
-    mask: bool,
+    #[command(flatten)]
+    segment: SegmentArguments,
     /// The cameras may stand up to some degrees from where they are said to.
     #[arg(long)]
     doubt_cameras: bool,
@@ -51,18 +49,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let nuisance = NuisanceParameters::default();
     let refinement = PoseFitSettings { nuisance: Some(nuisance), ..PoseFitSettings::default() };
     let refiner = Refiner::for_estimator(&estimator, refinement)?;
+    let found = arguments.segment.pictures()?;
     let mut frames = Vec::new();
     for name in &names {
-        match frame(arguments, name, &estimator, &refiner) {
+        match frame((&arguments.frames, name), &found, &estimator, &refiner) {
             Ok(frame) => frames.push(frame),
             Err(error) => eprintln!("phalanx: frame {name} is left out: {error:#}"),
         }
     }
-    let found = frames.len();
-    ensure!(
-        found >= LEAST_FRAMES,
-        "{found} frames can be used; at least {LEAST_FRAMES} are needed"
-    );
+    let used = frames.len();
+    ensure!(used >= LEAST_FRAMES, "{used} frames can be used; at least {LEAST_FRAMES} are needed");
     let cameras = nuisance.cameras.filter(|_| arguments.doubt_cameras);
     let cameras =
         cameras.map(|cameras| ExtrinsicsPrior { motion: CameraMotion::Static, ..cameras });
@@ -72,13 +68,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let overlaps: Vec<f64> = calibrated.ious.into_iter().flatten().collect();
     let mean = overlaps.iter().sum::<f64>() / overlaps.len() as f64;
     let said = json!({
-        "hand": arguments.out, "frames": found, "left_out": names.len() - found, "overlap": mean,
+        "hand": arguments.out, "frames": used, "left_out": names.len() - used, "overlap": mean,
         "border_px": calibrated.boundary_rms_px, "converged": calibrated.converged,
     });
     arguments.form.say(&output, &said, || {
         let settled = if calibrated.converged { "" } else { "; it stopped before it settled" };
         format!(
-            "from {found} frames; silhouettes overlap by {mean:.3}, borders are {:.2} px apart{settled}",
+            "from {used} frames; silhouettes overlap by {mean:.3}, borders are {:.2} px apart{settled}",
             calibrated.boundary_rms_px,
         )
     })
@@ -97,28 +93,18 @@ fn frame_names(folder: &Path, estimator: &Estimator) -> Result<Vec<String>> {
     Ok((0..count).map(|k| names[k * names.len() / count].clone()).collect())
 }
 
-/// One frame in every camera.
+/// One frame in every camera: the picture of a name in each camera's folder of a folder.
 fn frame(
-    arguments: &Arguments,
-    name: &str,
+    (folder, name): (&Path, &str),
+    found: &Pictures,
     estimator: &Estimator,
     refiner: &Refiner,
 ) -> Result<BundleFrame> {
-    let cameras = &estimator.rig().cameras;
-    let paths = cameras.iter().map(|camera| arguments.frames.join(&camera.name).join(name));
-    let pictures: Vec<DynamicImage> =
-        paths.map(|path| input::picture(&path, None)).collect::<Result<_>>()?;
-    let mut workspace = Workspace::default();
-    let estimate = if arguments.mask {
-        let masks: Vec<_> = pictures.iter().map(mask_from).collect();
-        let masks: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
-        estimator.estimate(&masks, &mut workspace)?
-    } else {
-        let skin = Segmenter::Skin(SkinModel::builtin());
-        let photographs: Vec<_> = pictures.iter().map(photograph_from).collect();
-        let photographs: Vec<Picture<'_>> =
-            photographs.iter().map(|image| Picture::Photograph(image, &skin)).collect();
-        estimator.estimate(&photographs, &mut workspace)?
-    };
-    Ok(refiner.frame(&estimate)?)
+    let mut prepared = Vec::new();
+    for camera in &estimator.rig().cameras {
+        let picture = input::picture(&folder.join(&camera.name).join(name), None)?;
+        prepared.push(found.prepared(&camera.name, &picture)?);
+    }
+    let pictures: Vec<Picture<'_>> = prepared.iter().map(Prepared::as_picture).collect();
+    Ok(refiner.frame(&estimator.estimate(&pictures, &mut Workspace::default())?)?)
 }

@@ -18,7 +18,9 @@ mod progress;
 mod recording;
 mod report;
 mod rig;
+mod segment;
 mod side;
+mod skin;
 mod take_file;
 mod track;
 mod train;
@@ -52,6 +54,8 @@ enum Command {
     Estimate(estimate::Arguments),
     /// Fit the proportions of a person's hand to pictures of it.
     CalibrateHand(calibrate_hand::Arguments),
+    /// Learn from your own pictures how to tell the hand from the rest.
+    Skin(skin::Arguments),
     /// Rigs of cameras, from other tools and for them.
     #[command(subcommand)]
     Rig(rig::Command),
@@ -89,6 +93,7 @@ fn run(command: &Command) -> anyhow::Result<ExitCode> {
         Command::Track(arguments) => return track::run(arguments),
         Command::Estimate(arguments) => return estimate::run(arguments),
         Command::CalibrateHand(arguments) => calibrate_hand::run(arguments)?,
+        Command::Skin(arguments) => skin::run(arguments)?,
         Command::Rig(command) => rig::run(command)?,
         Command::ImportCalibration(arguments) => import_calibration::run(arguments)?,
         Command::Convert(arguments) => convert::run(arguments)?,

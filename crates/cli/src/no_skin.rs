@@ -1,8 +1,10 @@
 //! Why no skin is found in a photograph.
 
 use image::{Rgb, RgbImage};
-use phalanx::{Error, Estimator};
+use phalanx::{Error, Estimator, Segmenter};
 use phalanx_segmentation::Error as Reason;
+
+use crate::segment::Prepared;
 
 /// The greatest difference between the channels of a pixel without colour, levels: what a JPEG file's
 /// rounding makes of a grey one.
@@ -12,15 +14,17 @@ const GREY: u8 = 8;
 pub(crate) fn explained(
     error: Error,
     estimator: &Estimator,
-    photographs: &[RgbImage],
+    pictures: &[Prepared<'_>],
 ) -> anyhow::Error {
     let Error::Silhouette { camera, reason: Reason::EmptyMask { .. } } = &error else {
         return error.into();
     };
-    let mut views = estimator.rig().cameras.iter().zip(photographs);
+    let mut views = estimator.rig().cameras.iter().zip(pictures);
     match views.find(|(seeing, _)| seeing.name == *camera) {
-        Some((_, photograph)) => anyhow::anyhow!("{error}; {}", cause(photograph)),
-        None => error.into(),
+        Some((_, Prepared::Photograph(photograph, Segmenter::Skin(_)))) => {
+            anyhow::anyhow!("{error}; {}", cause(photograph))
+        }
+        _ => error.into(),
     }
 }
 
@@ -32,12 +36,12 @@ fn cause(photograph: &RgbImage) -> &'static str {
         |channel: usize| photograph.pixels().map(|pixel| u64::from(pixel[channel])).sum::<u64>();
     if photograph.pixels().all(is_grey) {
         "the picture has no colour, and skin is found by its colour: give colour photographs, or masks \
-         with --mask"
+         with --mask, or see --segment"
     } else if sum(2) > sum(0) {
         "there is more blue than red in the picture, so the light may be too cold for skin to be found by \
-         its colour: set the camera's white balance, or give masks with --mask"
+         its colour: set the camera's white balance, give masks with --mask, or see --segment"
     } else {
         "nothing as large as a hand has the colour of skin: look at the light and the white balance, or \
-         give masks with --mask"
+         give masks with --mask, or see --segment"
     }
 }

@@ -54,9 +54,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         }
         (None, Some(hand), Some(masks)) => skin(hand, &|camera, name, _| {
             let folder = masks.join(camera);
-            let folder = PictureFolder::open(&folder).with_context(|| folder.display().to_string())?;
+            let folder =
+                PictureFolder::open(&folder).with_context(|| folder.display().to_string())?;
             let at = folder.stamps().iter().position(|stamp| stamp.name == name);
-            let at = at.with_context(|| format!("camera '{camera}': picture {name} has no mask"))?;
+            let at =
+                at.with_context(|| format!("camera '{camera}': picture {name} has no mask"))?;
             Ok(mask_from(&input::picture(folder.path(at), None)?))
         })?,
         _ => bail!(
@@ -91,10 +93,7 @@ fn learnt_backgrounds(empty: &Path) -> Result<BTreeMap<String, BackgroundModel>>
 }
 
 /// Learns the colour of skin; `mask` tells what is hand in a camera's picture of a name.
-fn skin(
-    hand: &Path,
-    mask: &dyn Fn(&str, &str, &RgbImage) -> Result<GrayImage>,
-) -> Result<Learnt> {
+fn skin(hand: &Path, mask: &dyn Fn(&str, &str, &RgbImage) -> Result<GrayImage>) -> Result<Learnt> {
     let mut trainer = SkinTrainer::default();
     let mut pairs = Vec::new();
     for (camera, folder) in cameras(hand)? {

@@ -16,6 +16,7 @@ use crate::form::Form;
 use crate::input;
 use crate::recording::source::RecordingArguments;
 use crate::rig::check;
+use crate::segment::SegmentArguments;
 use finding::{Finding, State};
 
 #[derive(Args)]
@@ -29,9 +30,8 @@ pub(crate) struct Arguments {
     /// What the cameras recorded, as `phalanx track` takes it.
     #[arg(value_name = "RECORDING", requires = "rig")]
     recordings: Vec<String>,
-    /// The pictures are masks: brighter than 127 is hand.
-    #[arg(long, requires = "recordings")]
-    mask: bool,
+    #[command(flatten)]
+    segment: SegmentArguments,
     #[command(flatten)]
     form: Form,
 }
@@ -66,7 +66,7 @@ fn findings(arguments: &Arguments) -> Vec<Finding> {
         let recordings = arguments.recordings.clone();
         let recording = RecordingArguments {
             recordings,
-            mask: arguments.mask,
+            segment: arguments.segment.clone(),
             ..RecordingArguments::default()
         };
         findings.extend(pictures::findings(&rig, &recording));
@@ -88,8 +88,8 @@ fn next(arguments: &Arguments, findings: &[Finding]) -> String {
     if arguments.recordings.is_empty() {
         return format!("phalanx doctor --rig {rig} RECORDING looks at what your cameras see");
     }
-    let mask = if arguments.mask { " --mask" } else { "" };
-    format!("phalanx track --rig {rig} {}{mask} --out take.csv", arguments.recordings.join(" "))
+    let given = arguments.segment.given();
+    format!("phalanx track --rig {rig} {}{given} --out take.csv", arguments.recordings.join(" "))
 }
 
 fn text(findings: &[Finding], next: &str) -> String {

@@ -9,14 +9,15 @@ use anyhow::{Result, bail, ensure};
 use clap::Args;
 use image::{DynamicImage, RgbImage, imageops};
 use phalanx::{
-    Estimate, Estimator, ObservedView, Picture, RefinedEstimate, Refiner, Segmenter, Workspace,
-    draw_overlay, draw_silhouette, draw_window_overlay, mask_from, photograph_from, working_window,
+    Estimate, Estimator, ObservedView, Picture, RefinedEstimate, Refiner, Workspace, draw_overlay,
+    draw_silhouette, draw_window_overlay, mask_from, working_window,
 };
 use phalanx_hand::HandShape;
 use phalanx_refine::{NuisanceParameters, PoseFitSettings};
-use phalanx_segmentation::{Silhouette, SkinModel};
+use phalanx_segmentation::Silhouette;
 
 use crate::input::{self, Crop};
+use crate::segment::{Pictures, Prepared, SegmentArguments};
 use crate::{no_skin, output};
 use phalanx_cli::files::{Output, print};
 use stills::{Still, stills};
@@ -31,9 +32,8 @@ pub(crate) struct Arguments {
     /// like the cameras), in which the pictures of one frame have one name.
     #[arg(required = true, value_name = "IMAGE")]
     images: Vec<PathBuf>,
-    /// The pictures are silhouettes: brighter than 127 is hand.
-    #[arg(long)]
-    mask: bool,
+    #[command(flatten)]
+    segment: SegmentArguments,
     /// Refine the estimate by drawing the hand and comparing.
     #[arg(long)]
     refine: bool,
@@ -55,6 +55,7 @@ pub(crate) struct Arguments {
 /// What every frame is estimated with.
 struct Setup<'a> {
     arguments: &'a Arguments,
+    pictures: Pictures,
     estimator: Estimator,
     hand: HandShape,
 }
@@ -72,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let hand = arguments.hand.as_deref().map(input::hand).transpose()?;
     let hand = hand.unwrap_or_else(|| estimator.hand().clone());
     let stills = stills(&estimator.rig().cameras, &arguments.images)?;
-    let setup = Setup { arguments, estimator, hand };
+    let setup = Setup { arguments, pictures: arguments.segment.pictures()?, estimator, hand };
     match (&stills[..], overlay_to) {
         ([], _) => bail!("there is no picture in the folders"),
         ([still], overlay_to) => one(&setup, still, overlay_to).map(|()| ExitCode::SUCCESS),
@@ -83,7 +84,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
 
 /// Estimates a frame, prints it and draws what is asked for.
 fn one(setup: &Setup<'_>, still: &Still, overlay_to: Option<Output>) -> Result<()> {
-    let Setup { arguments, estimator, hand } = setup;
+    let Setup { arguments, estimator, hand, .. } = setup;
     let answer = setup.answer(still, &mut Workspace::default())?;
     let Answer { estimate, mut doubts, pictures } = answer;
     if let Some(output) = &overlay_to {
@@ -137,7 +138,7 @@ fn several(setup: &Setup<'_>, stills: &[Still]) -> Result<ExitCode> {
 
 impl Setup<'_> {
     fn answer(&self, still: &Still, workspace: &mut Workspace) -> Result<Answer> {
-        let Self { arguments, estimator, hand } = self;
+        let Self { arguments, estimator, hand, .. } = self;
         let cameras = &estimator.rig().cameras;
         if let Some(view) = still.paths.iter().position(Option::is_none) {
             bail!("camera '{}' has no picture of this frame", cameras[view].name);
@@ -145,15 +146,17 @@ impl Setup<'_> {
         let paths: Vec<PathBuf> = still.paths.iter().flatten().cloned().collect();
         let pictures = paths.iter().map(|path| input::picture(path, arguments.crop));
         let pictures = pictures.collect::<Result<Vec<_>>>()?;
-        let estimate = if arguments.mask {
-            of_masks(estimator, &paths, &pictures, workspace)?
-        } else {
-            of_photographs(estimator, &pictures, workspace)?
+        let estimate = match &self.pictures {
+            Pictures::Masks => of_masks(estimator, &paths, &pictures, workspace)?,
+            found @ Pictures::Photographs(_) => {
+                of_photographs(estimator, found, &pictures, workspace)?
+            }
         };
         let mut doubts = output::doubts(estimator, &estimate);
-        let estimate = match arguments.refine {
-            true => refine(estimator, hand, estimate, &mut doubts)?,
-            false => estimate,
+        let estimate = if arguments.refine {
+            refine(estimator, hand, estimate, &mut doubts)?
+        } else {
+            estimate
         };
         Ok(Answer { estimate, doubts, pictures })
     }
@@ -225,16 +228,18 @@ fn of_masks(
 
 fn of_photographs(
     estimator: &Estimator,
+    found: &Pictures,
     pictures: &[DynamicImage],
     workspace: &mut Workspace,
 ) -> Result<Estimate> {
-    let skin = Segmenter::Skin(SkinModel::builtin());
-    let photographs: Vec<_> = pictures.iter().map(photograph_from).collect();
-    let pictures: Vec<Picture<'_>> =
-        photographs.iter().map(|image| Picture::Photograph(image, &skin)).collect();
-    estimator
-        .estimate(&pictures, workspace)
-        .map_err(|error| no_skin::explained(error, estimator, &photographs))
+    // More pictures than cameras are the estimator's to refuse.
+    let names = estimator.rig().cameras.iter().map(|camera| camera.name.as_str());
+    let named = pictures.iter().zip(names.chain(std::iter::repeat("")));
+    let prepared: Vec<Prepared<'_>> =
+        named.map(|(picture, name)| found.prepared(name, picture)).collect::<Result<_>>()?;
+    let pictures: Vec<Picture<'_>> = prepared.iter().map(Prepared::as_picture).collect();
+    let estimate = estimator.estimate(&pictures, workspace);
+    estimate.map_err(|error| no_skin::explained(error, estimator, &prepared))
 }
 
 /// The pictures side by side with what was seen and estimated. An estimated hand that cannot be

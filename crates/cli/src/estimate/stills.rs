@@ -45,7 +45,7 @@ fn in_folders(cameras: &[Camera], given: &[PathBuf]) -> Result<Vec<Still>> {
         let name = || folder.display().to_string();
         folders.push(PictureFolder::open(&folder).with_context(name)?);
     }
-    let stamps: Vec<&[Stamp]> = folders.iter().map(|folder| folder.stamps()).collect();
+    let stamps: Vec<&[Stamp]> = folders.iter().map(Recording::stamps).collect();
     let still = |moment: Moment| Still {
         paths: moment
             .frames

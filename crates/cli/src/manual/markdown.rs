@@ -69,8 +69,8 @@ fn row(arg: &Arg) -> [String; 2] {
         Some(long) => format!("`--{long}`"),
         None => format!("`{}`", values.join(" ")),
     };
-    let mut help = arg.get_long_help().or(arg.get_help()).map(ToString::to_string);
-    let help = help.get_or_insert_default();
+    let help = arg.get_long_help().or(arg.get_help()).map(ToString::to_string);
+    let mut help = sentence(&help.unwrap_or_default());
     let choices = if takes_value { arg.get_possible_values() } else { Vec::new() };
     for choice in choices.iter().filter(|choice| !choice.is_hide_set()) {
         let about = choice.get_help().map(|about| format!(": {about}")).unwrap_or_default();
@@ -81,7 +81,7 @@ fn row(arg: &Arg) -> [String; 2] {
     if takes_value && !defaults.is_empty() {
         write!(help, "<br>Default: {}", defaults.join(" ")).expect("writing to a string");
     }
-    [name.replace('|', "\\|"), std::mem::take(help)]
+    [name.replace('|', "\\|"), help]
 }
 
 /// A command in the list of the command above it.

@@ -4,27 +4,18 @@ use std::path::PathBuf;
 
 use anyhow::{Result, ensure};
 use image::{DynamicImage, GrayImage};
-use phalanx::{TakeFrame, mask_from, photograph_from};
+use phalanx::TakeFrame;
 use phalanx_camera::Camera;
-use phalanx_segmentation::{AdaptedSkin, SkinModel};
 
 use super::timeline::{Moment, Timeline};
 use super::{Recording, Stamp};
-
-/// How the hand is told from the rest of a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Pictures {
-    /// By the colour of skin.
-    Photographs,
-    /// They are masks: brighter than 127 is hand.
-    Masks,
-}
+use crate::segment::Pictures;
 
 /// Reads what all cameras recorded.
 pub(crate) struct Reader<'a> {
     cameras: &'a [Camera],
     recordings: Vec<Box<dyn Recording>>,
-    pictures: Pictures,
+    pictures: &'a Pictures,
     pub(crate) timeline: Timeline,
 }
 
@@ -43,7 +34,7 @@ impl<'a> Reader<'a> {
         cameras: &'a [Camera],
         paths: &[PathBuf],
         times: &[Option<Vec<f64>>],
-        pictures: Pictures,
+        pictures: &'a Pictures,
     ) -> Result<Self> {
         let recordings: Vec<Box<dyn Recording>> =
             paths.iter().map(|path| super::open(path)).collect::<Result<_>>()?;
@@ -119,7 +110,7 @@ fn with_times(stamps: &[Stamp], camera: &Camera, times: Option<&[f64]>) -> Resul
 }
 
 /// The mask of a picture, which must be a scaled copy of the camera's image to within a pixel.
-fn mask(picture: &DynamicImage, camera: &Camera, pictures: Pictures) -> Result<GrayImage> {
+fn mask(picture: &DynamicImage, camera: &Camera, pictures: &Pictures) -> Result<GrayImage> {
     let (width, height) = (picture.width(), picture.height());
     let (own_width, own_height) = (camera.intrinsics.width, camera.intrinsics.height);
     let fitting = f64::from(width) * f64::from(own_height) / f64::from(own_width);
@@ -128,11 +119,5 @@ fn mask(picture: &DynamicImage, camera: &Camera, pictures: Pictures) -> Result<G
         "the picture has {width}×{height} px, but the camera was calibrated for {own_width}×{own_height}; \
          is it turned or cropped?"
     );
-    Ok(match pictures {
-        Pictures::Masks => mask_from(picture),
-        Pictures::Photographs => {
-            let photograph = photograph_from(picture);
-            AdaptedSkin::new(&SkinModel::builtin(), &photograph).segment(&photograph)
-        }
-    })
+    pictures.mask(&camera.name, picture)
 }

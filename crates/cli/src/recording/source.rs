@@ -7,8 +7,9 @@ use clap::Args;
 use phalanx_camera::{Camera, Rig};
 
 use super::assign::assign;
-use super::reader::{Pictures, Reader};
+use super::reader::Reader;
 use super::timestamps;
+use crate::segment::{Pictures, SegmentArguments};
 
 #[derive(Args, Default)]
 pub(crate) struct RecordingArguments {
@@ -16,12 +17,11 @@ pub(crate) struct RecordingArguments {
     /// frame, or a video. One folder that holds them all, named like the cameras, will do.
     #[arg(required = true, value_name = "RECORDING")]
     pub(crate) recordings: Vec<String>,
-    /// The pictures are masks: brighter than 127 is hand.
-    #[arg(long)]
-    pub(crate) mask: bool,
+    #[command(flatten)]
+    pub(crate) segment: SegmentArguments,
     /// When the frames were taken: CSV with the columns cam_id and frame_time, s.
     #[arg(long, value_name = "FILE.csv")]
-    timestamps: Option<PathBuf>,
+    pub(crate) timestamps: Option<PathBuf>,
 }
 
 /// Cameras with their recordings, which can be read more than once.
@@ -48,7 +48,7 @@ impl Source {
         let (cameras, paths): (Vec<Camera>, Vec<PathBuf>) =
             both.filter_map(|(camera, path)| Some((camera.clone(), path?))).unzip();
         let times = times(arguments.timestamps.as_ref(), &cameras)?;
-        let pictures = if arguments.mask { Pictures::Masks } else { Pictures::Photographs };
+        let pictures = arguments.segment.pictures()?;
         let times_path = arguments.timestamps.clone();
         Ok(Self { cameras, paths, times, times_path, pictures })
     }
@@ -58,7 +58,7 @@ impl Source {
     /// # Errors
     /// As of [`Reader::open`].
     pub(crate) fn reader(&self) -> Result<Reader<'_>> {
-        Reader::open(&self.cameras, &self.paths, &self.times, self.pictures)
+        Reader::open(&self.cameras, &self.paths, &self.times, &self.pictures)
     }
 
     /// The files and folders that are read.

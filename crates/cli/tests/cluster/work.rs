@@ -24,7 +24,6 @@ impl Work {
         run(Command::new(PROGRAM).arg("demo").current_dir(work.0.path()));
         let demo = work.path("phalanx-demo");
         std::fs::copy(demo.join("rig.toml"), work.path("rig.toml")).expect("a rig");
-        let mut list = String::new();
         for entry in std::fs::read_dir(demo.join("recording")).expect("a recording") {
             let camera = entry.expect("a camera").path();
             let name = camera.file_name().expect("a name");
@@ -40,10 +39,8 @@ impl Work {
                     .expect("a copy");
             }
         }
-        for k in 0..RECORDINGS {
-            list += &format!("recordings/{k}\n");
-        }
-        std::fs::write(work.path("recordings.txt"), list).expect("a list");
+        let list: Vec<String> = (0..RECORDINGS).map(|k| format!("recordings/{k}")).collect();
+        std::fs::write(work.path("recordings.txt"), list.join("\n") + "\n").expect("a list");
         std::fs::create_dir(work.path("bin")).expect("a folder");
         work.script("exec \"$real\" \"$@\"\n");
         work

@@ -72,10 +72,7 @@ fn what_does_not_fit_is_broken_by_name() {
     assert_eq!(code, Some(2));
     let broken = in_state(&report, "broken");
     assert!(broken.len() == 1 && broken[0].contains("camera 'top'"), "{broken:?}");
-    assert!(
-        broken[0].contains("(40.0 mm apart); train again"),
-        "{broken:?}"
-    );
+    assert!(broken[0].contains("(40.0 mm apart); train again"), "{broken:?}");
     assert!(report["next"].as_str().unwrap().contains("first camera 'top'"), "{report:#}");
 
     let mut renamed = Rig::from_toml(&rig).unwrap();

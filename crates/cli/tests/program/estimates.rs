@@ -5,7 +5,7 @@ use phalanx::Estimator;
 use phalanx_hand::{Dof, Unit};
 use serde_json::Value;
 
-use crate::desk::{CAMERAS, Desk, Outcome, closing};
+use crate::desk::{CAMERAS, Desk, Outcome, closing, run};
 
 const MASKS: [&str; 3] = ["--mask", "side-mask.png", "top-mask.png"];
 const PHOTOGRAPHS: [&str; 2] = ["side.png", "top.png"];
@@ -285,4 +285,57 @@ fn several_frames_are_estimated_by_one_run() {
     std::fs::remove_file(desk.path("takes/side/2.png")).unwrap();
     let outcome = desk.estimate(&["--mask", "--json", "takes"]);
     assert!(outcome.out.contains("camera 'side' has no picture of this frame"), "{}", outcome.out);
+}
+
+/// Desk pictures before a background that a model of skin cannot tell from the hand.
+#[test]
+fn a_recorded_background_and_an_own_model_of_skin_tell_the_hand() {
+    let desk = Desk::new();
+    let skin_coloured = [200, 150, 122];
+    for camera in CAMERAS {
+        for folder in ["empty", "hand", "masks"] {
+            std::fs::create_dir_all(desk.path(folder).join(camera)).unwrap();
+        }
+        let mask = desk.open(&format!("{camera}-mask.png"));
+        let (width, height) = (mask.width(), mask.height());
+        let table = RgbImage::from_pixel(width, height, image::Rgb(skin_coloured));
+        let blue = RgbImage::from_fn(width, height, |x, y| {
+            let is_hand = mask.to_luma8().get_pixel(x, y).0[0] > 127;
+            image::Rgb(if is_hand { [60, 70, 190] } else { skin_coloured })
+        });
+        desk.save(&format!("empty/{camera}/a.png"), &table.into());
+        desk.save(&format!("hand/{camera}/b.png"), &blue.into());
+        desk.save(&format!("masks/{camera}/b.png"), &mask);
+    }
+    let learn = |arguments: &[&str]| run(desk.folder(), ["skin"].iter().chain(arguments));
+    for (arguments, said) in [
+        (&["--empty", "empty", "--out", "background"][..], "backgrounds of the cameras side, top"),
+        (
+            &["--hand", "hand", "--empty", "empty", "--out", "own"],
+            "100 % of the hand is told, 0.0 %",
+        ),
+        (&["--hand", "hand", "--masks", "masks", "--out", "masked"], "from 2 pictures"),
+    ] {
+        let outcome = learn(arguments);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+        assert!(outcome.out.contains(said), "{}", outcome.out);
+    }
+    let expected = json(&desk, &MASKS);
+    let pictures = ["hand/side/b.png", "hand/top/b.png"];
+    for model in ["background", "own", "masked", "plain"] {
+        let report = json(&desk, &[&["--segment", model], &pictures[..]].concat());
+        for dof in [Dof::IndexPip, Dof::MiddlePip, Dof::RingPip] {
+            let off = (value(&report, dof) - value(&expected, dof)).abs();
+            assert!(off < 5.0, "{model}: {dof} is {off}° off");
+        }
+    }
+    let refused = |arguments: &[&str], said: &str| {
+        let outcome = desk.estimate(&[arguments, &pictures[..]].concat());
+        assert_eq!(outcome.code, Some(2), "{arguments:?}");
+        assert!(outcome.err.contains(said), "{arguments:?}: {}", outcome.err);
+    };
+    refused(&["--segment", "model"], "model (--segment): not a phalanx segmentation");
+    refused(&["--segment", "nowhere"], "nowhere (--segment): ");
+    refused(&["--segment", "plain", "--mask"], "cannot be used with");
+    assert_eq!(learn(&["--out", "nothing"]).code, Some(2));
 }

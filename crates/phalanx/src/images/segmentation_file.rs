@@ -37,9 +37,9 @@ impl Segmentation {
     pub fn of_camera(&self, name: &str) -> Result<&Segmenter> {
         match self {
             Self::Shared(segmenter) => Ok(segmenter),
-            Self::ByCamera(cameras) => cameras
-                .get(name)
-                .ok_or_else(|| Error::NoSegmenter { camera: name.to_owned() }),
+            Self::ByCamera(cameras) => {
+                cameras.get(name).ok_or_else(|| Error::NoSegmenter { camera: name.to_owned() })
+            }
         }
     }
 

@@ -239,3 +239,31 @@ fn lost_scenes_are_counted_with_a_reason_and_too_many_refused() {
     assert!(message.starts_with(expected), "{message}");
     assert!(message.contains("(scene 3: "), "{message}");
 }
+
+/// Broken off after its first block and gone on with, a training has the bytes of an unbroken one.
+#[test]
+fn a_broken_off_training_goes_on_to_the_same_bytes() {
+    let quick = desk::training(OrientationRule::default());
+    let training = Training { regressor: linear(), ..quick };
+    let trainer = Trainer::new(training, 2100).error_samples(100);
+    let (rig, hand) = (top(), HandShape::adult());
+    let mut kept = Vec::new();
+    let mut keep = |part: &PartialTraining| kept.push(part.to_bytes().unwrap());
+    let whole = trainer.resume_shard(&rig, &hand, Shard::WHOLE, None, &mut keep, &NoProgress);
+    let whole = whole.unwrap().to_bytes().unwrap();
+    assert_eq!(kept.len(), 3);
+    assert!(kept[2] == whole);
+    let read = |bytes: &[u8]| PartialTraining::from_bytes(bytes).unwrap();
+    assert_eq!(read(&kept[1]).seen(), 2048);
+    let resume = |trainer: &Trainer, shard: Shard, earlier: &[u8]| {
+        let earlier = Some(read(earlier));
+        trainer.resume_shard(&rig, &hand, shard, earlier, &mut |_| {}, &NoProgress)
+    };
+    for earlier in &kept {
+        assert!(resume(&trainer, Shard::WHOLE, earlier).unwrap().to_bytes().unwrap() == whole);
+    }
+    let other = resume(&trainer.clone().seed(1), Shard::WHOLE, &kept[0]);
+    assert!(matches!(other, Err(Error::ForeignPart { .. })));
+    let other = resume(&trainer, Shard::new(1, 3).unwrap(), &kept[1]);
+    assert!(matches!(other, Err(Error::ForeignPart { what: "their shards" })));
+}

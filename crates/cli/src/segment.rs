@@ -1,0 +1,96 @@
+//! How the hand is told from the rest of pictures, as options.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use clap::Args;
+use image::{DynamicImage, GrayImage, RgbImage};
+use phalanx::{Picture, Segmentation, Segmenter, mask_from, photograph_from};
+use phalanx_segmentation::{PlainBackground, SkinModel};
+
+#[derive(Args, Clone, Default)]
+pub(crate) struct SegmentArguments {
+    /// The pictures are masks: brighter than 127 is hand.
+    #[arg(long)]
+    pub(crate) mask: bool,
+    /// How the hand is told from the rest: `skin` by its colour (the default), `plain` before a plain bright
+    /// background, `plain-dark` before a dark one, or as a FILE of `phalanx skin` says.
+    #[arg(long, value_name = "skin|plain|plain-dark|FILE", conflicts_with = "mask")]
+    pub(crate) segment: Option<PathBuf>,
+}
+
+/// What pictures are.
+pub(crate) enum Pictures {
+    /// Masks: brighter than 127 is hand.
+    Masks,
+    /// Photographs, in which the hand is found so.
+    Photographs(Segmentation),
+}
+
+/// A picture that an estimator can be asked about.
+pub(crate) enum Prepared<'a> {
+    Mask(GrayImage),
+    Photograph(RgbImage, &'a Segmenter),
+}
+
+impl SegmentArguments {
+    pub(crate) fn pictures(&self) -> Result<Pictures> {
+        if self.mask {
+            return Ok(Pictures::Masks);
+        }
+        let shared = match self.segment.as_deref().map_or(Some("skin"), Path::to_str) {
+            Some("skin") => Segmenter::Skin(SkinModel::builtin()),
+            Some("plain") => Segmenter::PlainBackground(PlainBackground::Bright),
+            Some("plain-dark") => Segmenter::PlainBackground(PlainBackground::Dark),
+            _ => return self.file().map(Pictures::Photographs),
+        };
+        Ok(Pictures::Photographs(Segmentation::Shared(shared)))
+    }
+
+    fn file(&self) -> Result<Segmentation> {
+        let path = self.segment.as_deref().unwrap_or(Path::new(""));
+        let name = || format!("{} (--segment)", path.display());
+        Segmentation::from_bytes(&std::fs::read(path).with_context(name)?).with_context(name)
+    }
+
+    /// The options as they are given on the command line, to be given again.
+    pub(crate) fn given(&self) -> String {
+        let mask = if self.mask { " --mask" } else { "" };
+        let segment =
+            self.segment.as_ref().map(|segment| format!(" --segment {}", segment.display()));
+        mask.to_owned() + &segment.unwrap_or_default()
+    }
+}
+
+impl Pictures {
+    /// The mask of a camera's picture.
+    pub(crate) fn mask(&self, camera: &str, picture: &DynamicImage) -> Result<GrayImage> {
+        Ok(match self {
+            Self::Masks => mask_from(picture),
+            Self::Photographs(segmentation) => {
+                segmentation.of_camera(camera)?.segment(&photograph_from(picture))?
+            }
+        })
+    }
+
+    /// A camera's picture for the estimator. A recorded background has the size of the picture, at which
+    /// the hand is therefore found here.
+    pub(crate) fn prepared(&self, camera: &str, picture: &DynamicImage) -> Result<Prepared<'_>> {
+        if let Self::Photographs(segmentation) = self {
+            let segmenter = segmentation.of_camera(camera)?;
+            if !matches!(segmenter, Segmenter::Background(_)) {
+                return Ok(Prepared::Photograph(photograph_from(picture), segmenter));
+            }
+        }
+        self.mask(camera, picture).map(Prepared::Mask)
+    }
+}
+
+impl Prepared<'_> {
+    pub(crate) fn as_picture(&self) -> Picture<'_> {
+        match self {
+            Self::Mask(mask) => Picture::Mask(mask),
+            Self::Photograph(photograph, segmenter) => Picture::Photograph(photograph, segmenter),
+        }
+    }
+}
