@@ -10,7 +10,7 @@ use phalanx_hand::{HandShape, Pose, PoseTable};
 use phalanx_io::calibration::{
     Calibration, Missing, Source, Unit, to_anipose_toml, to_opencv_yaml,
 };
-use phalanx_segmentation::{Cleanup, Silhouette, SkinModel, WristModel, clean};
+use phalanx_segmentation::{Cleanup, Mask, Silhouette, SkinModel, WristModel, clean};
 
 /// A target's name, which is also its corpus's, and what it does.
 pub(crate) type Target = (&'static str, fn(&[u8]));
@@ -134,6 +134,7 @@ pub(crate) fn mask(data: &[u8]) {
     let height = pixels.len() / width;
     let pixels = pixels[..width * height].to_vec();
     let Some(mask) = GrayImage::from_raw(width as u32, height as u32, pixels) else { return };
+    let mask = Mask::from(mask);
     let _ = Silhouette::from_mask(&mask);
     if let Ok(cleaned) = clean(&mask, &Cleanup::default()) {
         let _ = Silhouette::from_mask(&cleaned);

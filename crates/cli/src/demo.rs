@@ -1,11 +1,12 @@
 //! `phalanx demo`: a first result without a camera.
 
+use phalanx_segmentation::Mask;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use glam::DVec3;
-use image::{GrayImage, ImageFormat, Rgb, RgbImage, imageops};
+use image::{ImageFormat, Rgb, RgbImage, imageops};
 use phalanx::{TakeFit, TakeFrame, TakeSettings, draw_silhouette, fit_take};
 use phalanx_camera::{Camera, Rig};
 use phalanx_cli::files::Output;
@@ -141,9 +142,9 @@ fn sheet(cameras: &[Camera], frames: &[TakeFrame], fit: &TakeFit) -> Result<RgbI
     Ok(imageops::resize(&sheet, width, height, imageops::FilterType::Nearest))
 }
 
-fn panel(seen: &GrayImage, drawn: &GrayImage) -> RgbImage {
+fn panel(seen: &Mask, drawn: &Mask) -> RgbImage {
     RgbImage::from_fn(seen.width(), seen.height(), |x, y| {
-        let is_hand = |mask: &GrayImage| mask.get_pixel(x, y).0[0] > 127;
+        let is_hand = |mask: &Mask| mask.is_hand(x, y);
         match (is_hand(seen), is_hand(drawn)) {
             (true, true) => Rgb([190, 190, 190]),
             (true, false) => Rgb([230, 120, 20]),

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
-use image::{DynamicImage, GrayImage, RgbImage};
-use phalanx::{Picture, Segmentation, Segmenter, mask_from, photograph_from};
-use phalanx_segmentation::{PlainBackground, SkinModel};
+use image::{DynamicImage, RgbImage};
+use phalanx::{Picture, Segment, Segmentation, Segmenter, mask_from, photograph_from};
+use phalanx_segmentation::{Mask, PlainBackground, SkinModel};
 
 #[derive(Args, Clone, Default)]
 pub(crate) struct SegmentArguments {
@@ -29,7 +29,7 @@ pub(crate) enum Pictures {
 
 /// A picture that an estimator can be asked about.
 pub(crate) enum Prepared<'a> {
-    Mask(GrayImage),
+    Mask(Mask),
     Photograph(RgbImage, &'a Segmenter),
 }
 
@@ -64,7 +64,7 @@ impl SegmentArguments {
 
 impl Pictures {
     /// The mask of a camera's picture.
-    pub(crate) fn mask(&self, camera: &str, picture: &DynamicImage) -> Result<GrayImage> {
+    pub(crate) fn mask(&self, camera: &str, picture: &DynamicImage) -> Result<Mask> {
         Ok(match self {
             Self::Masks => mask_from(picture),
             Self::Photographs(segmentation) => {
@@ -90,7 +90,7 @@ impl Prepared<'_> {
     pub(crate) fn as_picture(&self) -> Picture<'_> {
         match self {
             Self::Mask(mask) => Picture::Mask(mask),
-            Self::Photograph(photograph, segmenter) => Picture::Photograph(photograph, segmenter),
+            Self::Photograph(photograph, segmenter) => Picture::Photograph(photograph, *segmenter),
         }
     }
 }

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use image::{GrayImage, RgbImage};
+use image::RgbImage;
 use phalanx::{Segmentation, Segmenter, mask_from, photograph_from};
 use phalanx_cli::files::Output;
-use phalanx_segmentation::{BackgroundModel, BackgroundParams, SkinModel, SkinTrainer};
+use phalanx_segmentation::{BackgroundModel, BackgroundParams, Mask, SkinModel, SkinTrainer};
 use serde_json::json;
 
 use crate::form::Form;
@@ -93,7 +93,7 @@ fn learnt_backgrounds(empty: &Path) -> Result<BTreeMap<String, BackgroundModel>>
 }
 
 /// Learns the colour of skin; `mask` tells what is hand in a camera's picture of a name.
-fn skin(hand: &Path, mask: &dyn Fn(&str, &str, &RgbImage) -> Result<GrayImage>) -> Result<Learnt> {
+fn skin(hand: &Path, mask: &dyn Fn(&str, &str, &RgbImage) -> Result<Mask>) -> Result<Learnt> {
     let mut trainer = SkinTrainer::default();
     let mut pairs = Vec::new();
     for (camera, folder) in cameras(hand)? {
@@ -117,7 +117,7 @@ fn skin(hand: &Path, mask: &dyn Fn(&str, &str, &RgbImage) -> Result<GrayImage>) 
 }
 
 /// The share of the pixels of hand, or of the others, that a model takes for skin.
-fn share_of_skin(model: &SkinModel, pairs: &[(RgbImage, GrayImage)], of_hand: bool) -> f64 {
+fn share_of_skin(model: &SkinModel, pairs: &[(RgbImage, Mask)], of_hand: bool) -> f64 {
     let (mut skin, mut all) = (0_usize, 0_usize);
     for (picture, mask) in pairs {
         for (rgb, level) in picture.pixels().zip(mask.pixels()) {

@@ -3,16 +3,16 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use image::{GrayImage, RgbImage};
+use image::RgbImage;
 use phalanx::{
-    Estimator, FixedPoses, NoProgress, OrientationRule, Picture, RegressorConfig, Segmenter,
-    Training, Workspace, describe_each,
+    Estimator, FixedPoses, NoProgress, OrientationRule, Picture, RegressorConfig, Training,
+    Workspace, describe_each,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_render::{Appearance, Renderer};
 use phalanx_rvm::{Stop, TwoStageSelection};
-use phalanx_segmentation::SkinModel;
+use phalanx_segmentation::{Mask, SkinModel};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -60,13 +60,13 @@ impl TrainingSet {
 
 /// A hand that was not trained on, through every camera of the rig at the size of a webcam's
 /// picture: coloured, and as masks.
-fn pictures(rig: &Rig, hand: &HandShape) -> (Vec<RgbImage>, Vec<GrayImage>) {
+fn pictures(rig: &Rig, hand: &HandShape) -> (Vec<RgbImage>, Vec<Mask>) {
     let solids = hand.pose(&pose(SAMPLES), &rig.volume.rest_frame()).primitives;
     let draw = |camera: &phalanx_camera::Camera| {
         let large = camera.intrinsics.resized(PICTURE.0, PICTURE.1);
         let mut renderer = Renderer::new(&camera.with_intrinsics(large)).expect("a valid camera");
         let photograph = renderer.shade(&solids, &Appearance::default(), 1);
-        (photograph.expect("in front"), renderer.silhouette(&solids).expect("in front"))
+        (photograph.expect("in front"), renderer.silhouette(&solids).expect("in front").into())
     };
     rig.cameras.iter().map(draw).unzip()
 }
@@ -74,7 +74,7 @@ fn pictures(rig: &Rig, hand: &HandShape) -> (Vec<RgbImage>, Vec<GrayImage>) {
 fn estimate(c: &mut Criterion) {
     let set = TrainingSet::new();
     let (photographs, masks) = pictures(&set.rig, &set.hand);
-    let skin = Segmenter::Skin(SkinModel::builtin());
+    let skin = SkinModel::builtin();
     let photographs: Vec<Picture> =
         photographs.iter().map(|image| Picture::Photograph(image, &skin)).collect();
     let masks: Vec<Picture> = masks.iter().map(Picture::Mask).collect();

@@ -3,7 +3,7 @@
 
 use std::error::Error;
 
-use phalanx::{NoProgress, Picture, Segmenter, Training, Workspace};
+use phalanx::{NoProgress, Picture, Training, Workspace};
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_render::{Appearance, Renderer};
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         estimator.to_bytes()?.len()
     );
 
-    let skin = Segmenter::Skin(SkinModel::builtin());
+    let skin = SkinModel::builtin();
     let mut workspace = Workspace::default();
     println!("closed  turned      index.pip  global.theta_z");
     for (closed, theta_z) in [(0.12, 10.0), (0.43, 30.0), (0.68, 50.0), (0.93, 10.0)] {

@@ -39,6 +39,7 @@ pub use images::picture::{Picture, Segmenter, mask_from, photograph_from};
 pub use images::segmentation_file::Segmentation;
 pub use localize::{Arm, BoundingSphere, Detections, HandCrop, Placement, associate};
 pub use losses::{LossReason, Losses};
+pub use phalanx_segmentation::{Mask, Segment};
 pub use progress::{NoProgress, Progress};
 pub use refiner::{RefinedEstimate, Refiner};
 pub use synthesis::augmentation::{Augmentation, MaskNoise, ShapeVariation};

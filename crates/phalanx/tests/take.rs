@@ -1,7 +1,6 @@
 //! Whole takes of drawn hands, from masks and cameras alone.
 
 use glam::{DAffine3, DMat3, DVec3};
-use image::GrayImage;
 use phalanx::{
     Error, FitDoubt, ItemRng, Missing, NoProgress, TakeFrame, TakeSettings, estimate_volume,
     fit_frame, fit_take,
@@ -9,6 +8,7 @@ use phalanx::{
 use phalanx_camera::{Camera, Extrinsics, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose, Side};
 use phalanx_render::Renderer;
+use phalanx_segmentation::Mask;
 
 /// A drawn take: cameras on three sides of a desk, and a hand that is no mean one.
 struct Drawn {
@@ -56,7 +56,8 @@ fn drawn(count: usize) -> Drawn {
     for frame in 0..count {
         let posed = hand.pose(&pose(frame), &rest);
         let mut mask = |renderer: &mut Renderer| {
-            Some(renderer.silhouette(&posed.primitives).expect("a hand before the camera"))
+            let drawn = renderer.silhouette(&posed.primitives);
+            Some(drawn.expect("a hand before the camera").into())
         };
         frames.push(TakeFrame { masks: renderers.iter_mut().map(&mut mask).collect() });
         joints.push(posed.joints);
@@ -94,16 +95,14 @@ fn a_view_that_shows_something_else_is_named_and_does_no_harm() {
     for frame in &mut frames {
         // A face that joins the hand.
         let mask = frame.masks[1].as_mut().expect("drawn");
-        let hand = mask.enumerate_pixels().filter(|(.., level)| level.0[0] > 127);
-        let (x, y): (Vec<f64>, Vec<f64>) =
-            hand.map(|(x, y, _)| (f64::from(x), f64::from(y))).unzip();
+        let hand = mask.hand_pixels();
+        let (x, y): (Vec<f64>, Vec<f64>) = hand.map(|[x, y]| (f64::from(x), f64::from(y))).unzip();
         let middle = [x, y].map(|all| all.iter().sum::<f64>() / all.len() as f64);
         let face = |x: u32, y: u32| {
             let (dx, dy) = (f64::from(x) - middle[0], f64::from(y) - middle[1] + 40.0);
             (dx / 35.0).powi(2) + (dy / 45.0).powi(2) < 1.0
         };
-        let both = |x, y| if face(x, y) { [255] } else { mask.get_pixel(x, y).0 };
-        *mask = GrayImage::from_fn(320, 240, |x, y| image::Luma(both(x, y)));
+        *mask = Mask::from_fn(320, 240, |x, y| face(x, y) || mask.is_hand(x, y));
     }
     let fit = fit_take(&cameras, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
     let named = fit.frames.iter().filter(|fit| fit.views[1].missing == Some(Missing::Disagrees));
@@ -133,7 +132,8 @@ fn a_left_hand_is_fitted_as_a_right_one_in_a_mirror() {
     let Drawn { cameras, frames, .. } = drawn(4);
     let right = fit_take(&cameras, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
     let cameras: Vec<Camera> = cameras.iter().map(mirrored).collect();
-    let flipped = |mask: &Option<GrayImage>| mask.as_ref().map(image::imageops::flip_horizontal);
+    let flip = |mask: &Mask| image::imageops::flip_horizontal(&**mask).into();
+    let flipped = |mask: &Option<Mask>| mask.as_ref().map(flip);
     let of_frame =
         |frame: &TakeFrame| TakeFrame { masks: frame.masks.iter().map(flipped).collect() };
     let frames: Vec<TakeFrame> = frames.iter().map(of_frame).collect();
@@ -150,9 +150,9 @@ fn a_left_hand_is_fitted_as_a_right_one_in_a_mirror() {
 }
 
 /// A camera and what it sees left of a column of its picture.
-fn cut(camera: &Camera, mask: &GrayImage, column: u32) -> (Camera, GrayImage) {
+fn cut(camera: &Camera, mask: &Mask, column: u32) -> (Camera, Mask) {
     let intrinsics = Intrinsics { width: column, ..camera.intrinsics };
-    let seen = image::imageops::crop_imm(mask, 0, 0, column, mask.height()).to_image();
+    let seen = Mask::from_fn(column, mask.height(), |x, y| mask.is_hand(x, y));
     (Camera { intrinsics, ..camera.clone() }, seen)
 }
 
@@ -185,7 +185,7 @@ fn a_hand_that_is_cut_off_is_doubted() {
 #[test]
 fn a_take_without_a_hand_is_an_error() {
     let cameras = cameras();
-    let nothing = TakeFrame { masks: vec![Some(GrayImage::new(320, 240)), None, None] };
+    let nothing = TakeFrame { masks: vec![Some(Mask::new(320, 240)), None, None] };
     let fit = fit_take(&cameras, &[nothing], &TakeSettings::default(), &NoProgress);
     assert!(matches!(fit, Err(Error::NoHand)));
     let short = TakeFrame { masks: vec![None] };

@@ -4,7 +4,7 @@
 mod property;
 
 use glam::{DVec2, DVec3};
-use image::{GrayImage, Luma};
+use image::Luma;
 use phalanx::{
     Augmentation, FixedPoses, Framing, MaskNoise, OrientationRule, Picture, PicturedHand, Refiner,
     Scene, SceneDescriber, Training, ViewConfig, Window, WindowFinder, Workspace, initial_global,
@@ -14,7 +14,7 @@ use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_multiview::CodebookTrainer;
 use phalanx_refine::{PoseFitSettings, PosePrior};
 use phalanx_render::Renderer;
-use phalanx_segmentation::{HandDetection, Silhouette};
+use phalanx_segmentation::{HandDetection, Mask, Silhouette};
 use proptest::prelude::*;
 
 const THROUGH_WINDOWS: ViewConfig =
@@ -56,13 +56,13 @@ fn training(framing: Framing) -> Training {
 }
 
 /// The mask of a posed hand as a camera of any size sees it.
-fn mask(camera: &Camera, pose: &Pose) -> GrayImage {
+fn mask(camera: &Camera, pose: &Pose) -> Mask {
     let solids = HandShape::adult().pose(pose, &rig().volume.rest_frame()).primitives;
-    Renderer::new(camera).unwrap().silhouette(&solids).unwrap()
+    Renderer::new(camera).unwrap().silhouette(&solids).unwrap().into()
 }
 
 /// What a camera's window shows of a mask.
-fn look(camera: &Camera, mask: &GrayImage) -> (Window, Silhouette) {
+fn look(camera: &Camera, mask: &Mask) -> (Window, Silhouette) {
     let mut finder = WindowFinder::default();
     let cameras = std::slice::from_ref(camera);
     let windows = finder.find(cameras, std::slice::from_ref(mask), None).unwrap();
@@ -70,12 +70,6 @@ fn look(camera: &Camera, mask: &GrayImage) -> (Window, Silhouette) {
     finder.silhouettes(&windows, &mut silhouettes).unwrap();
     let [silhouette] = silhouettes;
     (windows[0].clone(), silhouette)
-}
-
-fn overlap(a: &GrayImage, b: &GrayImage) -> f64 {
-    let both = a.iter().zip(b.iter()).filter(|(a, b)| **a > 127 && **b > 127).count();
-    let any = a.iter().zip(b.iter()).filter(|(a, b)| **a > 127 || **b > 127).count();
-    both as f64 / any as f64
 }
 
 /// A wide camera above the desk, with a lens.
@@ -91,7 +85,7 @@ fn the_hand_fills_a_fifth_and_points_to_the_right() {
     for pose in unseen() {
         let camera = wide();
         let (window, silhouette) = look(&camera, &mask(&camera, &pose));
-        let hand = silhouette.mask.iter().filter(|&&level| level > 127).count() as f64;
+        let hand = silhouette.mask.area() as f64;
         // With the arm, which is less than the hand.
         let share = hand / silhouette.mask.len() as f64;
         assert!((0.15..0.4).contains(&share), "{share}");
@@ -133,7 +127,7 @@ fn training_and_use_see_the_same() {
         let estimate = estimator.estimate(&pictures, &mut workspace).unwrap();
         for (used, trained_on) in estimate.observation.silhouettes().zip(&trained_on) {
             // It was found in a smaller picture.
-            assert!(overlap(&used.mask, &trained_on.mask) > 0.9);
+            assert!(used.mask.iou(&trained_on.mask) > 0.9);
         }
         for dof in [Dof::IndexPip, Dof::MiddleMcp, Dof::ThetaZ] {
             worst = worst.max((estimate.pose[dof] - pose[dof]).abs().to_degrees());
@@ -143,7 +137,7 @@ fn training_and_use_see_the_same() {
 }
 
 /// What windows show of a scene: drawn at once, and by way of the pictures that they look into.
-fn both_ways(rig: &Rig, scene: &Scene) -> [Vec<GrayImage>; 2] {
+fn both_ways(rig: &Rig, scene: &Scene) -> [Vec<Mask>; 2] {
     let mut describer = SceneDescriber::new(rig, THROUGH_WINDOWS).unwrap();
     let mask = |silhouette: &Silhouette| silhouette.mask.clone();
     let drawn = describer.silhouettes(scene).unwrap().map(mask).collect();
@@ -170,9 +164,9 @@ fn a_window_is_drawn_as_the_picture_shows_it() {
             let rough = damage.scene(&rig, &HandShape::adult(), pose, 3, number);
             let (clean, rough) = (both_ways(&rig, &nominal), both_ways(&rig, &rough));
             for view in 0..rig.cameras.len() {
-                alike += overlap(&clean[0][view], &clean[1][view]);
+                alike += clean[0][view].iou(&clean[1][view]);
                 for way in 0..2 {
-                    ragged[way] += 1.0 - overlap(&clean[way][view], &rough[way][view]);
+                    ragged[way] += 1.0 - clean[way][view].iou(&rough[way][view]);
                 }
                 views += 1.0;
             }
@@ -219,7 +213,7 @@ fn the_size_of_the_pictures_makes_no_difference() {
     let mut pose = unseen()[1];
     [pose[Dof::TX], pose[Dof::TY], pose[Dof::TZ]] = [-20.0, 10.0, 15.0];
     let mut estimate_at = |size: f64| {
-        let masks: Vec<GrayImage> = rig
+        let masks: Vec<Mask> = rig
             .cameras
             .iter()
             .map(|camera| {
@@ -227,7 +221,7 @@ fn the_size_of_the_pictures_makes_no_difference() {
                 let [width, height] = [width, height].map(|side| (size * f64::from(side)) as u32);
                 let pictured = camera.with_intrinsics(camera.intrinsics.resized(width, height));
                 let solids = hand.pose(&pose, &rig.volume.rest_frame()).primitives;
-                Renderer::new(&pictured).unwrap().silhouette(&solids).unwrap()
+                Renderer::new(&pictured).unwrap().silhouette(&solids).unwrap().into()
             })
             .collect();
         let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
@@ -265,7 +259,7 @@ fn a_pointing_finger_is_not_taken_for_a_hand() {
     for (dof, mm) in [(Dof::TX, -4.0), (Dof::TY, -48.6), (Dof::TZ, -40.6)] {
         pose[dof] = mm;
     }
-    let masks: Vec<GrayImage> = rig.cameras.iter().map(|camera| mask(camera, &pose)).collect();
+    let masks: Vec<Mask> = rig.cameras.iter().map(|camera| mask(camera, &pose)).collect();
     let windows = WindowFinder::default().find(&rig.cameras, &masks, None).unwrap();
     let posed = HandShape::adult().pose(&pose, &rig.volume.rest_frame());
     for (camera, window) in rig.cameras.iter().zip(windows) {
@@ -328,7 +322,7 @@ fn whole_pictures_have_no_windows() {
     let mut workspace = Workspace::default();
     let estimator =
         training(Framing::Picture).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
-    let masks: Vec<GrayImage> =
+    let masks: Vec<Mask> =
         rig.cameras.iter().map(|camera| mask(camera, &closing(0.5, 10.0))).collect();
     let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
     let estimate = estimator.estimate(&pictures, &mut workspace).unwrap();
@@ -398,20 +392,20 @@ proptest! {
         let inside = camera.intrinsics;
         let finer = camera.with_intrinsics(inside.resized(zoom * 480, zoom * 360));
         let (_, finer) = look(&finer, &mask(&finer, &pose));
-        prop_assert!(overlap(&seen.mask, &finer.mask) > 0.7, "{}", overlap(&seen.mask, &finer.mask));
+        prop_assert!(seen.mask.iou(&finer.mask) > 0.7, "{}", seen.mask.iou(&finer.mask));
         // The same picture on a larger sensor: all pixels moved.
         let shifted = Intrinsics {
             width: 480 + dx, height: 360 + dy,
             cx: inside.cx + f64::from(dx), cy: inside.cy + f64::from(dy), ..inside
         };
         let shifted = camera.with_intrinsics(shifted);
-        let moved = GrayImage::from_fn(480 + dx, 360 + dy, |x, y| match (x.checked_sub(dx), y.checked_sub(dy)) {
-            (Some(x), Some(y)) => *whole.get_pixel(x, y),
+        let moved = Mask::from_fn(480 + dx, 360 + dy, |x, y| match (x.checked_sub(dx), y.checked_sub(dy)) {
+            (Some(x), Some(y)) => whole.is_hand(x, y),
             // The arm goes on to the border.
-            (None, y) => *whole.get_pixel(0, y.unwrap_or(0)),
-            _ => Luma([0]),
+            (None, y) => whole.is_hand(0, y.unwrap_or(0)),
+            _ => false,
         });
         let (_, moved) = look(&shifted, &moved);
-        prop_assert!(overlap(&seen.mask, &moved.mask) > 0.85, "{}", overlap(&seen.mask, &moved.mask));
+        prop_assert!(seen.mask.iou(&moved.mask) > 0.85, "{}", seen.mask.iou(&moved.mask));
     }
 }

@@ -5,6 +5,7 @@ use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::{PoseFitSettings, PosePrior, SilhouetteObservation};
 use phalanx_render::Renderer;
+use phalanx_segmentation::Mask;
 use std::hint::black_box;
 
 fn refinement(c: &mut Criterion) {
@@ -20,7 +21,7 @@ fn refinement(c: &mut Criterion) {
     let masks: Vec<_> = rig
         .cameras
         .iter()
-        .map(|camera| Renderer::new(camera).unwrap().silhouette(&primitives).unwrap())
+        .map(|camera| Mask::from(Renderer::new(camera).unwrap().silhouette(&primitives).unwrap()))
         .collect();
     let see = || -> Vec<SilhouetteObservation> {
         rig.cameras

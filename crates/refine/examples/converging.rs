@@ -1,10 +1,10 @@
 //! Draws the README's figure: three views of a hand, held against a wrong guess and against what that
 //! becomes. `cargo run --release -p phalanx-refine --example converging > crates/refine/figures/converging.svg`
 
+use phalanx_segmentation::Mask;
 use std::error::Error;
 use std::fmt::Write;
 
-use image::GrayImage;
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_refine::{PoseFitSettings, PosePrior, SilhouetteObservation};
@@ -16,9 +16,9 @@ const COLOURS: [&str; 3] = ["#b8b8b8", "#d95f02", "#1f78b4"];
 fn main() -> Result<(), Box<dyn Error>> {
     let rig = Rig::from_toml(include_str!("../fixtures/desk.toml"))?;
     let (hand, rest) = (HandShape::adult(), rig.volume.rest_frame());
-    let draw = |pose: &Pose| -> Result<Vec<GrayImage>, Box<dyn Error>> {
+    let draw = |pose: &Pose| -> Result<Vec<Mask>, Box<dyn Error>> {
         let primitives = hand.pose(pose, &rest).primitives;
-        let view = |camera| Ok(Renderer::new(camera)?.silhouette(&primitives)?);
+        let view = |camera| Ok(Renderer::new(camera)?.silhouette(&primitives)?.into());
         rig.cameras.iter().map(view).collect()
     };
     let truth = bent([0.2, 0.3, 0.9, 1.2, 0.5], 0.9);
@@ -66,8 +66,8 @@ fn bent(bends: [f64; 5], theta_z: f64) -> Pose {
 }
 
 /// Two masks, one on the other: runs of pixels of one kind, row by row.
-fn compare(observed: &GrayImage, drawn: &GrayImage, at: [u32; 2]) -> std::fmt::Result {
-    let kind = |x, y| match [observed, drawn].map(|mask| mask.get_pixel(x, y).0[0] > 127) {
+fn compare(observed: &Mask, drawn: &Mask, at: [u32; 2]) -> std::fmt::Result {
+    let kind = |x, y| match [observed, drawn].map(|mask| mask.is_hand(x, y)) {
         [true, true] => Some(0),
         [true, false] => Some(1),
         [false, true] => Some(2),

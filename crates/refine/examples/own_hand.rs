@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut evidence = Vec::new();
         for camera in &rig.cameras {
             let mask = Renderer::new(camera)?.silhouette(&primitives)?;
-            evidence.push(SilhouetteObservation::new(camera, &mask)?);
+            evidence.push(SilhouetteObservation::new(camera, &mask.into())?);
         }
         let start = moving(f64::from(frame), 0.1); // an estimate, not quite right
         let prior = PosePrior::independent(start, &deviations)?;

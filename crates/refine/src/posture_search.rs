@@ -1,8 +1,8 @@
 //! Digits that went the wrong way: they are tried in other postures.
 
 use glam::DAffine3;
-use image::GrayImage;
 use phalanx_hand::{Bone, Digit, Dof, HandShape, Pose, PosedHand, Primitive};
+use phalanx_segmentation::Mask;
 
 use crate::error::{Error, Result};
 use crate::geometry::correspondence::ViewMatcher;
@@ -56,8 +56,8 @@ impl Found {
 /// The hand without the digits that are tried, as each view draws it.
 struct Background {
     digits: Vec<Digit>,
-    drawn: Vec<GrayImage>,
-    scratch: GrayImage,
+    drawn: Vec<Mask>,
+    scratch: Mask,
 }
 
 /// A posture of one digit or of two, and what speaks against it.
@@ -74,7 +74,7 @@ struct Drawn {
     pose: Pose,
     places: [usize; 2],
     /// In every view.
-    images: Vec<GrayImage>,
+    images: Vec<Mask>,
     /// Energy of its pixels outside the observed silhouettes, which no other digit makes up for.
     spill: f64,
 }
@@ -161,7 +161,7 @@ impl Search<'_> {
         let mut drawn = Vec::with_capacity(PLACES * PLACES);
         'postures: for (places, pose) in self.postures(digit, pose) {
             let own = primitives(&self.hand.pose(&pose, self.rest), &[digit], Part::Digits);
-            let mut images = vec![GrayImage::default(); self.views.len()];
+            let mut images = vec![Mask::default(); self.views.len()];
             let mut outside = 0;
             for (v, image) in images.iter_mut().enumerate() {
                 if !self.can_draw(v, &own, image)? {
@@ -222,11 +222,11 @@ impl Search<'_> {
     fn background(&mut self, pose: &Pose, digits: &[Digit]) -> Result<Background> {
         let posed = self.hand.pose(pose, self.rest);
         let others: Vec<Primitive> = primitives(&posed, digits, Part::Others);
-        let mut drawn = vec![GrayImage::default(); self.views.len()];
+        let mut drawn = vec![Mask::default(); self.views.len()];
         for (v, image) in drawn.iter_mut().enumerate() {
             self.draw(v, &others, image)?;
         }
-        Ok(Background { digits: digits.to_vec(), drawn, scratch: GrayImage::default() })
+        Ok(Background { digits: digits.to_vec(), drawn, scratch: Mask::default() })
     }
 
     /// The pose that the search begins at.
@@ -258,7 +258,7 @@ impl Search<'_> {
         Ok((cost < limit).then_some(cost))
     }
 
-    fn draw(&mut self, view: usize, primitives: &[Primitive], image: &mut GrayImage) -> Result<()> {
+    fn draw(&mut self, view: usize, primitives: &[Primitive], image: &mut Mask) -> Result<()> {
         let moved: Vec<Primitive> =
             primitives.iter().map(|primitive| primitive.moved(&self.motions[view])).collect();
         self.views[view].draw(&moved, &self.evidence[view], image)
@@ -269,7 +269,7 @@ impl Search<'_> {
         &mut self,
         view: usize,
         primitives: &[Primitive],
-        image: &mut GrayImage,
+        image: &mut Mask,
     ) -> Result<bool> {
         match self.draw(view, primitives, image) {
             Ok(()) => Ok(true),
@@ -295,7 +295,7 @@ fn primitives(posed: &PosedHand, digits: &[Digit], part: Part) -> Vec<Primitive>
 }
 
 /// How many of the known pixels of the union of three masks differ from what was seen.
-fn difference([a, b, c]: [&GrayImage; 3], seen: &SilhouetteObservation) -> u32 {
+fn difference([a, b, c]: [&Mask; 3], seen: &SilhouetteObservation) -> u32 {
     // So few at a time that a byte can count them.
     const COUNTED: usize = 240;
     let layers = a.chunks(COUNTED).zip(b.chunks(COUNTED)).zip(c.chunks(COUNTED));

@@ -3,7 +3,6 @@
 mod property;
 
 use glam::{DAffine3, DVec2, DVec3};
-use image::GrayImage;
 use phalanx_camera::{Camera, Intrinsics, Rig};
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::{
@@ -11,6 +10,7 @@ use phalanx_refine::{
     SilhouetteObservation,
 };
 use phalanx_render::Renderer;
+use phalanx_segmentation::Mask;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -25,7 +25,7 @@ fn see(rig: &Rig, hand: &HandShape, pose: &Pose, rest: &DAffine3) -> Vec<Silhoue
         .iter()
         .map(|camera| {
             let mask = Renderer::new(camera).unwrap().silhouette(&primitives).unwrap();
-            SilhouetteObservation::new(camera, &mask).unwrap()
+            SilhouetteObservation::new(camera, &mask.into()).unwrap()
         })
         .collect()
 }
@@ -215,21 +215,22 @@ fn what_is_not_known_has_no_say() {
     let rest = rig.volume.rest_frame();
     let truth = hand_bent_by([0.3, 0.5, 0.4, 0.6, 0.3], 0.6);
     let whole = see(&rig, &hand, &truth, &rest);
-    let cut = |tells: fn(&Camera, &GrayImage, f64) -> SilhouetteObservation| -> Vec<SilhouetteObservation> {
-        // The fingers reach beyond this share of the first picture.
-        let shares = [0.55, 1.0, 1.0];
-        let cut = |(seen, share): (&SilhouetteObservation, f64)| {
-            let known = is_left_of(share, seen.mask().width());
-            let mut mask = seen.mask().clone();
-            for (x, y, pixel) in mask.enumerate_pixels_mut() {
-                if !known(DVec2::new(f64::from(x), f64::from(y)) + 0.5) {
-                    pixel.0[0] = 0;
+    let cut =
+        |tells: fn(&Camera, &Mask, f64) -> SilhouetteObservation| -> Vec<SilhouetteObservation> {
+            // The fingers reach beyond this share of the first picture.
+            let shares = [0.55, 1.0, 1.0];
+            let cut = |(seen, share): (&SilhouetteObservation, f64)| {
+                let known = is_left_of(share, seen.mask().width());
+                let mut mask = seen.mask().clone();
+                for (x, y, pixel) in mask.enumerate_pixels_mut() {
+                    if !known(DVec2::new(f64::from(x), f64::from(y)) + 0.5) {
+                        pixel.0[0] = 0;
+                    }
                 }
-            }
-            tells(seen.camera(), &mask, share)
+                tells(seen.camera(), &mask, share)
+            };
+            whole.iter().zip(shares).map(cut).collect()
         };
-        whole.iter().zip(shares).map(cut).collect()
-    };
     let taken_at_its_word =
         cut(|camera, mask, _| SilhouetteObservation::new(camera, mask).unwrap());
     let known_in_part = cut(|camera, mask, share| {
@@ -294,8 +295,7 @@ fn what_cannot_be_fitted_is_named() {
     let (rig, hand) = (rig(), HandShape::adult());
     let rest = rig.volume.rest_frame();
     let camera = &rig.cameras[0];
-    let size =
-        |width, height| SilhouetteObservation::new(camera, &image::GrayImage::new(width, height));
+    let size = |width, height| SilhouetteObservation::new(camera, &Mask::new(width, height));
     assert!(matches!(size(60, 45).unwrap_err(), Error::MaskSize { found: (60, 45), .. }));
     assert!(matches!(size(120, 90).unwrap_err(), Error::NoBoundary { .. }));
     let refinement = PoseFitSettings::default();

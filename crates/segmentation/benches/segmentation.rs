@@ -3,9 +3,10 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use image::{GrayImage, Rgb, RgbImage};
+use image::{Rgb, RgbImage};
 use phalanx_segmentation::{
-    Cleanup, Contour, PlainBackground, Silhouette, SkinModel, Workspace, clean_into, downsample,
+    Cleanup, Contour, Mask, PlainBackground, Silhouette, SkinModel, Workspace, clean_into,
+    downsample,
 };
 
 /// A hand-like scene: a palm with four fingers and a forearm that leaves below, and speckle.
@@ -25,10 +26,10 @@ fn steps(criterion: &mut Criterion) {
     let photograph = scene(640, 480);
     let small = scene(120, 90);
     let model = SkinModel::builtin();
-    let mut raw = GrayImage::default();
+    let mut raw = Mask::default();
     model.segment_into(&small, &mut raw);
     let (cleanup, mut workspace) = (Cleanup::default(), Workspace::default());
-    let mut cleaned = GrayImage::default();
+    let mut cleaned = Mask::default();
     clean_into(&raw, &cleanup, &mut workspace, &mut cleaned).expect("there is a hand");
     let mut silhouette = Silhouette::default();
 

@@ -4,8 +4,8 @@
 
 use std::io::Write;
 
-use image::{GrayImage, RgbImage};
-use phalanx_segmentation::{SkinModel, SkinTrainer};
+use image::RgbImage;
+use phalanx_segmentation::{Mask, SkinModel, SkinTrainer};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let paths: Vec<String> = std::env::args().skip(1).collect();
@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let mut examples = Vec::new();
     for [picture, mask] in pairs {
-        examples.push((image::open(picture)?.to_rgb8(), image::open(mask)?.to_luma8()));
+        examples.push((image::open(picture)?.to_rgb8(), Mask::from(image::open(mask)?.to_luma8())));
     }
     let mut trainer = SkinTrainer::default();
     for (picture, mask) in &examples {
@@ -29,11 +29,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// The share of all pixels that a model puts on the right side.
-fn right(model: &SkinModel, examples: &[(RgbImage, GrayImage)]) -> f64 {
+fn right(model: &SkinModel, examples: &[(RgbImage, Mask)]) -> f64 {
     let (mut right, mut all) = (0, 0);
     for (picture, mask) in examples {
         let found = model.segment(picture);
-        right += found.iter().zip(mask.iter()).filter(|(a, b)| (**a > 127) == (**b > 127)).count();
+        right += found
+            .iter()
+            .zip(mask.iter())
+            .filter(|(a, b)| Mask::is_hand_level(**a) == Mask::is_hand_level(**b))
+            .count();
         all += mask.len();
     }
     right as f64 / all as f64

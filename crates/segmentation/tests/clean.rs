@@ -5,14 +5,13 @@ mod common;
 mod property;
 
 use common::{drawing, masks};
-use image::{GrayImage, Luma};
-use phalanx_segmentation::{Cleanup, Error, Workspace, clean, clean_into};
+use phalanx_segmentation::{Cleanup, Error, Mask, Workspace, clean, clean_into};
 use proptest::prelude::*;
 
 /// Sizes and border contact of all components of pixels that `is`, and each pixel's component.
-fn flood(mask: &GrayImage, hand: bool) -> (Vec<(usize, bool)>, Vec<Option<usize>>) {
+fn flood(mask: &Mask, hand: bool) -> (Vec<(usize, bool)>, Vec<Option<usize>>) {
     let (width, height) = (i64::from(mask.width()), i64::from(mask.height()));
-    let is = |x: i64, y: i64| (mask.get_pixel(x as u32, y as u32).0[0] > 127) == hand;
+    let is = |x: i64, y: i64| (mask.is_hand(x as u32, y as u32)) == hand;
     let (mut regions, mut of) = (Vec::new(), vec![None; (width * height) as usize]);
     for start in 0..width * height {
         if of[start as usize].is_some() || !is(start % width, start / width) {
@@ -39,22 +38,22 @@ fn flood(mask: &GrayImage, hand: bool) -> (Vec<(usize, bool)>, Vec<Option<usize>
     (regions, of)
 }
 
-fn slow_vote(mask: &GrayImage, radius: u32) -> GrayImage {
-    GrayImage::from_fn(mask.width(), mask.height(), |x, y| {
+fn slow_vote(mask: &Mask, radius: u32) -> Mask {
+    Mask::from_fn(mask.width(), mask.height(), |x, y| {
         let columns = x.saturating_sub(radius)..=(x + radius).min(mask.width() - 1);
         let (mut hand, mut voters) = (0, 0);
         for x in columns {
             for y in y.saturating_sub(radius)..=(y + radius).min(mask.height() - 1) {
                 voters += 2;
-                hand += if mask.get_pixel(x, y).0[0] > 127 { 2 } else { 0 };
+                hand += if mask.is_hand(x, y) { 2 } else { 0 };
             }
         }
-        let own = mask.get_pixel(x, y).0[0] > 127;
-        Luma([if 2 * hand > voters || (2 * hand == voters && own) { 255 } else { 0 }])
+        let own = mask.is_hand(x, y);
+        2 * hand > voters || (2 * hand == voters && own)
     })
 }
 
-fn slow_clean(mask: &GrayImage, cleanup: &Cleanup) -> Option<GrayImage> {
+fn slow_clean(mask: &Mask, cleanup: &Cleanup) -> Option<Mask> {
     let mut mask = slow_vote(mask, cleanup.majority_radius);
     let (regions, of) = flood(&mask, true);
     let first_best = (0..regions.len()).rev().max_by_key(|&i| regions[i])?;
@@ -91,7 +90,7 @@ proptest! {
 
     #[test]
     fn memory_from_another_mask_does_not_matter(first in masks(), second in masks()) {
-        let (mut workspace, mut out) = (Workspace::default(), GrayImage::default());
+        let (mut workspace, mut out) = (Workspace::default(), Mask::default());
         let cleanup = Cleanup::default();
         let _ = clean_into(&first, &cleanup, &mut workspace, &mut out);
         let reused = clean_into(&second, &cleanup, &mut workspace, &mut out).map(|()| out);
@@ -114,7 +113,7 @@ fn what_cannot_be_cleaned_is_named() {
     let speck = drawing(&["....", ".#..", "....", "...."]);
     let needs_two = Cleanup { majority_radius: 0, min_hand: 0.1, ..Cleanup::default() };
     assert_eq!(clean(&speck, &needs_two), Err(Error::EmptyMask { pixels: 1, needed: 2 }));
-    assert!(matches!(clean(&GrayImage::new(0, 3), &needs_two), Err(Error::ImageTooSmall { .. })));
+    assert!(matches!(clean(&Mask::new(0, 3), &needs_two), Err(Error::ImageTooSmall { .. })));
     for bad in [
         Cleanup { majority_radius: 8, ..needs_two },
         Cleanup { max_hole: f64::NAN, ..needs_two },

@@ -7,13 +7,12 @@ mod property;
 use std::collections::BTreeSet;
 
 use common::{drawing, masks, placed};
-use image::GrayImage;
 use imageproc::contours::find_contours;
-use phalanx_segmentation::{Cleanup, Contour, clean};
+use phalanx_segmentation::{Cleanup, Contour, Mask, clean};
 use proptest::prelude::*;
 
 /// The largest component without holes, so that all its background is outside.
-fn solid(mask: &GrayImage) -> Option<GrayImage> {
+fn solid(mask: &Mask) -> Option<Mask> {
     clean(mask, &Cleanup { majority_radius: 0, max_hole: 1.0, min_hand: 0.0 }).ok()
 }
 
@@ -21,17 +20,17 @@ fn pixel(point: [f64; 2]) -> [i64; 2] {
     point.map(|v| (v - 0.5) as i64)
 }
 
-fn level(mask: &GrayImage, [x, y]: [i64; 2]) -> Option<bool> {
+fn level(mask: &Mask, [x, y]: [i64; 2]) -> Option<bool> {
     let (x, y) = (u32::try_from(x).ok()?, u32::try_from(y).ok()?);
     mask.get_pixel_checked(x, y).map(|level| level.0[0] > 127)
 }
 
-fn touches_background([x, y]: [i64; 2], mask: &GrayImage) -> bool {
+fn touches_background([x, y]: [i64; 2], mask: &Mask) -> bool {
     let around = [[x + 1, y], [x - 1, y], [x, y + 1], [x, y - 1]];
     around.iter().any(|&pixel| level(mask, pixel) == Some(false))
 }
 
-fn suzuki(mask: &GrayImage) -> Vec<[i64; 2]> {
+fn suzuki(mask: &Mask) -> Vec<[i64; 2]> {
     let padded = placed(mask, (mask.width() + 2, mask.height() + 2), (1, 1));
     let outer = find_contours::<i32>(&padded).swap_remove(0);
     outer.points.iter().map(|point| [i64::from(point.x) - 1, i64::from(point.y) - 1]).collect()
@@ -148,5 +147,5 @@ fn a_single_pixel_is_one_point_and_nothing_is_none() {
     assert_eq!((dot.points.as_slice(), dot.is_closed()), ([[1.5, 1.5]].as_slice(), true));
     assert_eq!(Contour::trace(&drawing(&["...", "..."])), Contour::default());
     assert_eq!(Contour::trace(&drawing(&["##", "##"])), Contour::default());
-    assert_eq!(Contour::trace(&GrayImage::new(0, 0)), Contour::default());
+    assert_eq!(Contour::trace(&Mask::new(0, 0)), Contour::default());
 }

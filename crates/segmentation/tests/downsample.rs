@@ -2,8 +2,8 @@
 
 mod property;
 
-use image::{GrayImage, Luma, RgbImage};
-use phalanx_segmentation::{CropWindow, Error, downsample, downsample_mask};
+use image::{GrayImage, RgbImage};
+use phalanx_segmentation::{CropWindow, Error, Mask, downsample, downsample_mask};
 use proptest::prelude::*;
 
 /// The length that target cell `i` of `count` shares with source cell `j` of `length`.
@@ -85,10 +85,10 @@ fn known_windows() {
 
 #[test]
 fn a_mask_pixel_is_hand_from_half_coverage_on() {
-    let mask = GrayImage::from_raw(4, 2, vec![200, 0, 128, 0, 127, 255, 0, 0]).unwrap();
-    assert_eq!(downsample_mask(&mask, 2, 1).unwrap().into_raw(), [255, 0]);
-    assert_eq!(downsample_mask(&mask, 4, 2).unwrap().into_raw(), [255, 0, 255, 0, 0, 255, 0, 0]);
-    let all = GrayImage::from_pixel(7, 5, Luma([255]));
+    let mask = Mask::from(GrayImage::from_raw(4, 2, vec![200, 0, 128, 0, 127, 255, 0, 0]).unwrap());
+    assert_eq!(downsample_mask(&mask, 2, 1).unwrap().as_raw(), &[255, 0]);
+    assert_eq!(downsample_mask(&mask, 4, 2).unwrap().as_raw(), &[255, 0, 255, 0, 0, 255, 0, 0]);
+    let all = Mask::from_fn(7, 5, |_, _| true);
     assert!(downsample_mask(&all, 3, 2).unwrap().iter().all(|&level| level == 255));
 }
 

@@ -4,8 +4,10 @@ mod property;
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use image::{GrayImage, Luma};
-use phalanx_segmentation::{Cleanup, Error, HandDetection, HandDetector, WristModel, WristTrainer};
+use image::Luma;
+use phalanx_segmentation::{
+    Cleanup, Error, HandDetection, HandDetector, Mask, WristModel, WristTrainer,
+};
 use proptest::prelude::*;
 
 /// An open hand of 180 units and a forearm of another 250, cut off or bent; positions in units are
@@ -49,14 +51,12 @@ impl Drawn {
         forearm || upper_arm || palm || fingers || capsule(p, [35.0, 32.0], [85.0, 65.0], 10.0)
     }
 
-    fn mask(&self, width: u32, height: u32) -> GrayImage {
-        GrayImage::from_fn(width, height, |x, y| {
-            Luma([if self.covers(f64::from(x) + 0.5, f64::from(y) + 0.5) { 255 } else { 0 }])
-        })
+    fn mask(&self, width: u32, height: u32) -> Mask {
+        Mask::from_fn(width, height, |x, y| self.covers(f64::from(x) + 0.5, f64::from(y) + 0.5))
     }
 
     /// The likeliest hand in its picture, checked against the truth.
-    fn check(&self, mask: &GrayImage) -> HandDetection {
+    fn check(&self, mask: &Mask) -> HandDetection {
         let hand = find(mask)[0];
         let [dx, dy] = [hand.wrist[0] - self.wrist[0], hand.wrist[1] - self.wrist[1]];
         let length = 180.0 * self.scale;
@@ -69,7 +69,7 @@ impl Drawn {
     }
 }
 
-fn find(mask: &GrayImage) -> Vec<HandDetection> {
+fn find(mask: &Mask) -> Vec<HandDetection> {
     HandDetector::default().find(mask, &Cleanup::default(), WristModel::builtin()).unwrap()
 }
 
@@ -108,7 +108,7 @@ fn other_things_in_the_picture_are_no_hands() {
 }
 
 /// A mask as the detector cleans it.
-fn detector_mask(mask: &GrayImage) -> GrayImage {
+fn detector_mask(mask: &Mask) -> Mask {
     let mut detector = HandDetector::default();
     let hand = detector.find(mask, &Cleanup::default(), WristModel::builtin()).unwrap()[0];
     detector.isolate(&hand)
@@ -116,14 +116,12 @@ fn detector_mask(mask: &GrayImage) -> GrayImage {
 
 #[test]
 fn nothing_to_find_is_an_error() {
-    let find = |mask: &GrayImage| {
+    let find = |mask: &Mask| {
         HandDetector::default().find(mask, &Cleanup::default(), WristModel::builtin())
     };
-    assert!(matches!(find(&GrayImage::new(0, 5)), Err(Error::ImageTooSmall { .. })));
-    assert!(matches!(find(&GrayImage::new(50, 50)), Err(Error::EmptyMask { .. })));
-    let line = GrayImage::from_fn(50, 50, |x, y| {
-        Luma([if (20..22).contains(&y) && (10..40).contains(&x) { 255 } else { 0 }])
-    });
+    assert!(matches!(find(&Mask::new(0, 5)), Err(Error::ImageTooSmall { .. })));
+    assert!(matches!(find(&Mask::new(50, 50)), Err(Error::EmptyMask { .. })));
+    let line = Mask::from_fn(50, 50, |x, y| (20..22).contains(&y) && (10..40).contains(&x));
     assert_eq!(find(&line), Err(Error::NoHand));
     assert!(matches!(WristTrainer::default().finish(), Err(Error::TooFewWrists { .. })));
 }
@@ -184,10 +182,10 @@ proptest! {
         width in 1_u32..70, height in 1_u32..70, seed in 0_u64..1 << 40, density in 0_u64..100,
         block in 1_u32..9,
     ) {
-        let mask = GrayImage::from_fn(width, height, |x, y| {
+        let mask = Mask::from_fn(width, height, |x, y| {
             let cell = u64::from(x / block) * 7919 + u64::from(y / block) * 104_729 + seed;
             let noise = cell.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
-            Luma([if noise % 100 < density { 255 } else { 0 }])
+            noise % 100 < density
         });
         let mut detector = HandDetector::default();
         let Ok(hands) = detector.find(&mask, &Cleanup::default(), WristModel::builtin()) else {
@@ -200,7 +198,7 @@ proptest! {
             prop_assert!(hand.wrist[1] >= 0.0 && hand.wrist[1] <= f64::from(height));
             prop_assert!(hand.area >= 1.0 && hand.length > 0.0 && hand.arm >= 0.0);
             prop_assert!(hand.across[0] < hand.across[1] && hand.mahalanobis2.is_finite());
-            let isolated = detector.isolate(&hand).iter().filter(|&&level| level > 127).count();
+            let isolated = detector.isolate(&hand).area();
             prop_assert!(isolated as f64 >= hand.area);
         }
     }

@@ -5,17 +5,15 @@ mod common;
 mod property;
 
 use common::{masks, placed};
-use image::{GrayImage, Luma};
-use phalanx_segmentation::{Contour, Error, ForearmCue, Silhouette, Workspace};
+use phalanx_segmentation::{Contour, Error, ForearmCue, Mask, Silhouette, Workspace};
 use proptest::prelude::*;
 
-fn painted(width: u32, height: u32, hand: impl Fn(i32, i32) -> bool) -> GrayImage {
-    let level = |x: u32, y: u32| if hand(x as i32, y as i32) { 255 } else { 0 };
-    GrayImage::from_fn(width, height, |x, y| Luma([level(x, y)]))
+fn painted(width: u32, height: u32, hand: impl Fn(i32, i32) -> bool) -> Mask {
+    Mask::from_fn(width, height, |x, y| hand(x as i32, y as i32))
 }
 
 /// A palm with three fingers upwards and a forearm down to row `end`.
-fn toy_hand(width: u32, height: u32, end: i32) -> GrayImage {
+fn toy_hand(width: u32, height: u32, end: i32) -> Mask {
     painted(width, height, |x, y| {
         let palm = (24..44).contains(&x) && (30..50).contains(&y);
         let fingers = (10..30).contains(&y) && (x - 24) % 8 < 4 && (24..44).contains(&x);
@@ -110,13 +108,13 @@ fn of_two_smooth_ends_the_narrower_is_the_forearm() {
 
 #[test]
 fn what_has_no_silhouette_is_named() {
-    let of = |mask: &GrayImage| Silhouette::from_mask(mask).unwrap_err();
-    let full = GrayImage::from_pixel(20, 16, Luma([255]));
+    let of = |mask: &Mask| Silhouette::from_mask(mask).unwrap_err();
+    let full = Mask::from_fn(20, 16, |_, _| true);
     assert_eq!(of(&full), Error::NoContour { pixels: 320, width: 20, height: 16 });
     assert!(of(&full).to_string().contains("covers the whole image border"));
-    assert_eq!(of(&GrayImage::new(20, 16)), Error::EmptyMask { pixels: 0, needed: 1 });
+    assert_eq!(of(&Mask::new(20, 16)), Error::EmptyMask { pixels: 0, needed: 1 });
     let small = Error::ImageTooSmall { width: 15, height: 99, minimum: 16 };
-    assert_eq!(of(&GrayImage::new(15, 99)), small);
+    assert_eq!(of(&Mask::new(15, 99)), small);
     let disc = painted(40, 40, |x, y| (x - 20).pow(2) + (y - 20).pow(2) < 100);
     assert!(matches!(of(&disc), Error::NoForearm { .. }));
     let dot = painted(40, 40, |x, y| x == 20 && y == 20);

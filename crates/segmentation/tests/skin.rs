@@ -4,9 +4,9 @@ mod property;
 
 use std::path::PathBuf;
 
-use image::{GrayImage, Luma, Rgb, RgbImage};
+use image::{Rgb, RgbImage};
 use phalanx_segmentation::{
-    BUILTIN_SOURCE, Error, Label, SkinModel, SkinParams, SkinTrainer, chroma,
+    BUILTIN_SOURCE, Error, Label, Mask, SkinModel, SkinParams, SkinTrainer, chroma,
 };
 use proptest::prelude::*;
 
@@ -97,14 +97,14 @@ fn hostile_texts_are_refused_by_line() {
 fn learns_from_an_image_and_its_mask() {
     let hand = |x: u32| x < 3;
     let image = RgbImage::from_fn(8, 4, |x, _| Rgb(if hand(x) { SKIN } else { WALL }));
-    let mask = GrayImage::from_fn(8, 4, |x, _| Luma([if hand(x) { 255 } else { 0 }]));
+    let mask = Mask::from_fn(8, 4, |x, _| hand(x));
     let mut trainer = SkinTrainer::default();
     trainer.add_image(&image, &mask).unwrap();
-    let mismatch = trainer.add_image(&image, &GrayImage::new(4, 8));
+    let mismatch = trainer.add_image(&image, &Mask::new(4, 8));
     assert!(matches!(mismatch, Err(Error::SizeMismatch { found: (4, 8), .. })));
     let model = trainer.finish("one image").unwrap();
     assert_eq!(model.segment(&image), mask);
-    let mut used = GrayImage::default();
+    let mut used = Mask::default();
     model.segment_into(&image, &mut used);
     assert_eq!(used, mask);
     assert!(!model.is_skin([0, 255, 0]), "a colour far from both classes");

@@ -1,8 +1,8 @@
 //! Masks without a skin model.
 
-use image::{GrayImage, Luma, Rgb, RgbImage};
+use image::{Rgb, RgbImage};
 use phalanx_segmentation::{
-    BackgroundModel, BackgroundParams, BackgroundParts, Error, PlainBackground,
+    BackgroundModel, BackgroundParams, BackgroundParts, Error, Mask, PlainBackground,
 };
 
 const SIZE: (u32, u32) = (48, 36);
@@ -11,8 +11,8 @@ fn is_hand(x: u32, y: u32) -> bool {
     (16..30).contains(&x) && y > 8
 }
 
-fn truth() -> GrayImage {
-    GrayImage::from_fn(SIZE.0, SIZE.1, |x, y| Luma([if is_hand(x, y) { 255 } else { 0 }]))
+fn truth() -> Mask {
+    Mask::from_fn(SIZE.0, SIZE.1, is_hand)
 }
 
 /// A hand before `wall`; `light` brightens and darkens, and `seed` stirs the noise.
@@ -70,7 +70,7 @@ fn a_noisier_pixel_needs_a_larger_difference() {
     let strict = BackgroundParams { shadow: 1.0, ..BackgroundParams::default() };
     let model = BackgroundModel::from_frames(&frames, strict).unwrap();
     let image = RgbImage::from_pixel(2, 1, Rgb([140; 3]));
-    assert_eq!(model.segment(&image).unwrap().into_raw(), [0, 255]);
+    assert_eq!(model.segment(&image).unwrap().into_image().into_raw(), [0, 255]);
     let noise = &model.parts().noise;
     assert!((noise[0] - 20.0).abs() < 1e-4 && noise[1] == 0.0);
 }

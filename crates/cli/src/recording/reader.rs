@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::{Result, ensure};
-use image::{DynamicImage, GrayImage};
-use phalanx::TakeFrame;
+use image::DynamicImage;
+use phalanx::{Mask, TakeFrame};
 use phalanx_camera::Camera;
 
 use super::timeline::{Moment, Timeline};
@@ -110,7 +110,7 @@ fn with_times(stamps: &[Stamp], camera: &Camera, times: Option<&[f64]>) -> Resul
 }
 
 /// The mask of a picture, which must be a scaled copy of the camera's image to within a pixel.
-fn mask(picture: &DynamicImage, camera: &Camera, pictures: &Pictures) -> Result<GrayImage> {
+fn mask(picture: &DynamicImage, camera: &Camera, pictures: &Pictures) -> Result<Mask> {
     let (width, height) = (picture.width(), picture.height());
     let (own_width, own_height) = (camera.intrinsics.width, camera.intrinsics.height);
     let fitting = f64::from(width) * f64::from(own_height) / f64::from(own_width);

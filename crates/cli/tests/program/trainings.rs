@@ -2,8 +2,7 @@
 
 use std::process::{Command, Stdio};
 
-use image::GrayImage;
-use phalanx::{draw_silhouette, working_camera};
+use phalanx::{Mask, draw_silhouette, working_camera};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
 use serde_json::Value;
@@ -19,7 +18,7 @@ fn train(folder: &TempDir, arguments: &[&str]) -> Outcome {
 }
 
 /// The hand before the built-in rig's camera from above.
-fn seen_from_the_top(pose: &Pose) -> GrayImage {
+fn seen_from_the_top(pose: &Pose) -> Mask {
     let rig = Rig::from_toml(include_str!("../../fixtures/desk.toml")).unwrap();
     let camera = rig.select(&["top"]).unwrap().cameras.remove(0);
     let camera = working_camera(&camera).unwrap();

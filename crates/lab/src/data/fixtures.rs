@@ -99,7 +99,7 @@ impl Coverage {
         let rest = rig.volume.rest_frame();
         let silhouette = |pose: &Pose, camera: &Camera| -> Result<(f64, bool)> {
             let silhouette = Silhouette::from_mask(&draw_silhouette(camera, &hand, pose, &rest)?)?;
-            let pixels = silhouette.mask.iter().filter(|&&level| level > 127).count();
+            let pixels = silhouette.mask.area();
             let share = pixels as f64 / silhouette.mask.len() as f64;
             Ok((share, silhouette.forearm.crossings > 1))
         };

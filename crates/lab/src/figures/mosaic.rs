@@ -1,8 +1,9 @@
 //! Pictures beside and below each other, and how silhouettes look in them.
 
+use phalanx_segmentation::Mask;
 use std::borrow::Borrow;
 
-use image::{GrayImage, Rgb, RgbImage, imageops};
+use image::{Rgb, RgbImage, imageops};
 
 /// What surrounds pictures, and is behind silhouettes.
 const MARGIN: Rgb<u8> = Rgb([255, 255, 255]);
@@ -25,9 +26,9 @@ pub(crate) fn mosaic<P: Borrow<RgbImage>>(panels: &[P], columns: u32, gap: u32) 
 }
 
 /// A silhouette in one colour before a dark ground.
-pub(crate) fn tinted(mask: &GrayImage, colour: [u8; 3]) -> RgbImage {
+pub(crate) fn tinted(mask: &Mask, colour: [u8; 3]) -> RgbImage {
     RgbImage::from_fn(mask.width(), mask.height(), |x, y| {
-        if mask.get_pixel(x, y).0[0] > 127 { Rgb(colour) } else { BEHIND }
+        if mask.is_hand(x, y) { Rgb(colour) } else { BEHIND }
     })
 }
 

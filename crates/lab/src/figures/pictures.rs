@@ -6,8 +6,8 @@ use anyhow::Result;
 use clap::Args;
 use image::{RgbImage, imageops};
 use phalanx::{
-    OrientationRule, Picture, Progress, SceneDescriber, SceneSource, Segmenter, Training,
-    Workspace, draw_overlay,
+    OrientationRule, Picture, Progress, SceneDescriber, SceneSource, Training, Workspace,
+    draw_overlay,
 };
 use phalanx::{draw_silhouette, working_window};
 use phalanx_camera::Rig;
@@ -86,7 +86,7 @@ fn estimates(
     progress: &dyn Progress,
 ) -> Result<RgbImage> {
     let estimator = Training::default().run(rig, hand, &unseen_poses()?, progress)?;
-    let skin = Segmenter::Skin(SkinModel::builtin());
+    let skin = SkinModel::builtin();
     let mut workspace = Workspace::default();
     let mut sheet = RgbImage::new(PANEL.0 * rig.cameras.len() as u32, PANEL.1 * shown.len() as u32);
     for (row, photographs) in shown.iter().enumerate() {

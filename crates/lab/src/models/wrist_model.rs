@@ -6,12 +6,11 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 use glam::{DAffine3, DQuat, DVec2, DVec3};
-use image::GrayImage;
 use phalanx::ItemRng;
 use phalanx_camera::{Camera, Intrinsics};
 use phalanx_hand::{Dof, HandShape, sample_pose};
 use phalanx_render::Renderer;
-use phalanx_segmentation::{Cleanup, HandDetector, WristModel, WristTrainer};
+use phalanx_segmentation::{Cleanup, HandDetector, Mask, WristModel, WristTrainer};
 
 use crate::files;
 
@@ -33,7 +32,7 @@ pub struct Arguments {
 
 /// A silhouette and what it is of, in pixels.
 struct Sample {
-    mask: GrayImage,
+    mask: Mask,
     wrist: DVec2,
     /// Along the forearm.
     direction: DVec2,
@@ -108,6 +107,6 @@ fn sample(hand: &HandShape, number: u64) -> Result<Option<Sample>> {
     let behind = camera.project(rest.transform_point3(DVec3::NEG_Z));
     let (true, Some(behind)) = (pixels.iter().all(within), behind) else { return Ok(None) };
     let length = pixels.iter().map(|p| p.distance(pixels[0])).fold(0.0, f64::max);
-    let mask = Renderer::new(&camera)?.silhouette(&posed.primitives)?;
+    let mask = Mask::from(Renderer::new(&camera)?.silhouette(&posed.primitives)?);
     Ok(Some(Sample { mask, wrist: pixels[0], direction: (pixels[0] - behind).normalize(), length }))
 }

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use anyhow::Result;
-use image::{GrayImage, RgbImage, imageops};
+use image::{RgbImage, imageops};
 use phalanx::{
     Describer, ItemRng, OrientationRule, Scene, describe_each, descriptors, draw_silhouette,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, Side};
 use phalanx_multiview::{CodebookTrainer, ViewEncoders};
-use phalanx_segmentation::{Silhouette, SkinModel};
+use phalanx_segmentation::{Mask, Silhouette, SkinModel};
 use phalanx_shape_context::BINS;
 use rayon::prelude::*;
 use serde_json::json;
@@ -65,7 +65,7 @@ struct Photograph {
 }
 
 /// How the hand is found in a photograph.
-type Segment = fn(&RgbImage) -> Option<GrayImage>;
+type Segment = fn(&RgbImage) -> Option<Mask>;
 
 pub(super) fn run(lab: &Lab<'_>, folder: &Path) -> Result<Photographed> {
     let photographs = load(folder)?;
@@ -222,7 +222,7 @@ impl Gallery {
             let (camera, rest) = (&self.rig.cameras[0], &scene.views[0].rest);
             let mask = draw_silhouette(camera, &scene.hand, &scene.pose, rest)?;
             // The fingers point upwards in the photographs, and to the right in the view.
-            let upright = imageops::rotate270(&mask);
+            let upright = Mask::from(imageops::rotate270(&*mask));
             pairs
                 .push((photographs[places[shown]].image.clone(), tinted(&upright, [86, 180, 233])));
         }

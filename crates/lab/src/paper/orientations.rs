@@ -5,12 +5,12 @@ use std::ops::RangeInclusive;
 use anyhow::{Context, Result};
 use clap::ValueEnum;
 use glam::{DAffine3, DQuat};
-use image::{GrayImage, RgbImage};
+use image::RgbImage;
 use phalanx::{ItemRng, PoseContexts, Scene, describe_each, descriptors, draw_silhouette};
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{HandShape, Pose};
 use phalanx_multiview::CodebookTrainer;
-use phalanx_segmentation::Silhouette;
+use phalanx_segmentation::{Mask, Silhouette};
 use phalanx_shape_context::{BINS, hand_axis};
 use serde_json::json;
 
@@ -202,7 +202,7 @@ impl Trial<'_> {
         ))
     }
 
-    fn drawn(&self, scene: &Scene) -> Result<GrayImage> {
+    fn drawn(&self, scene: &Scene) -> Result<Mask> {
         let (camera, rest) = (&self.rig.cameras[0], &scene.views[0].rest);
         Ok(draw_silhouette(camera, &scene.hand, &scene.pose, rest)?)
     }

@@ -2,10 +2,10 @@
 
 use anyhow::{Context, Result};
 use glam::DVec2;
-use image::{GrayImage, Rgb, RgbImage, imageops};
+use image::{Rgb, RgbImage, imageops};
 use phalanx::{Describer, OrientationRule, WORKING_SIZE, draw_silhouette};
 use phalanx_codebook::chi_squared;
-use phalanx_segmentation::{Silhouette, SkinModel, downsample};
+use phalanx_segmentation::{Mask, Silhouette, SkinModel, downsample};
 use phalanx_shape_context::{BINS, hand_axis, ring_radii, sector_edges};
 use serde_json::json;
 
@@ -40,9 +40,9 @@ struct Subject {
     words: &'static str,
     photograph: RgbImage,
     /// By the colour of skin.
-    mask: GrayImage,
+    mask: Mask,
     /// By other means.
-    reference: GrayImage,
+    reference: Mask,
     /// What the reference is.
     means: &'static str,
     tip: Tip,
@@ -208,7 +208,7 @@ struct Match {
 }
 
 impl Seen {
-    fn of(mask: &GrayImage) -> Result<Self> {
+    fn of(mask: &Mask) -> Result<Self> {
         let (mut describer, mut silhouette) = (Describer::default(), Silhouette::default());
         describer.silhouette_of_mask(mask, &mut silhouette)?;
         let contexts = describer.contexts(&silhouette, OrientationRule::HandAxis)?;

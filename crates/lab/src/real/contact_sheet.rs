@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use image::{GrayImage, RgbImage, imageops};
+use image::{RgbImage, imageops};
 use phalanx::{Describer, Estimator, Progress, Training, Workspace, draw_overlay, draw_silhouette};
 use phalanx_hand::{HandShape, Side};
-use phalanx_segmentation::{Cleanup, CropWindow, Silhouette, SkinModel, clean};
+use phalanx_segmentation::{Cleanup, CropWindow, Mask, Silhouette, SkinModel, clean};
 use rayon::prelude::*;
 
 use crate::data::data_set::DataSet;
@@ -38,7 +38,7 @@ struct Look {
     name: String,
     panel: RgbImage,
     /// The skin model's mask, cleaned; absent where nothing was left of it.
-    mask: Option<GrayImage>,
+    mask: Option<Mask>,
     /// Why there is no contour or no estimate.
     failure: Option<String>,
 }
@@ -139,7 +139,7 @@ struct Eyes {
 impl Eyes {
     fn draw_estimate(
         &mut self,
-        raw: &GrayImage,
+        raw: &Mask,
         estimator: &Estimator,
         panel: &mut RgbImage,
     ) -> Result<()> {
@@ -206,7 +206,7 @@ impl Set {
 fn overlap_report(photographs: &[(String, RgbImage)], looks: &[Look]) -> String {
     let overlap_of = |((_, image), look): (&(String, RgbImage), &Look)| {
         let reference = saturation::reference_mask(image)?;
-        Some(look.mask.as_ref().map_or(0.0, |mask| saturation::overlap(mask, &reference)))
+        Some(look.mask.as_ref().map_or(0.0, |mask| mask.iou(&reference)))
     };
     let mut overlaps: Vec<f64> = photographs.iter().zip(looks).filter_map(overlap_of).collect();
     overlaps.sort_by(f64::total_cmp);

@@ -2,15 +2,15 @@
 //! `phalanx estimate`, with and without `--refine`.
 
 use anyhow::Result;
-use image::{DynamicImage, GrayImage, RgbImage};
+use image::{DynamicImage, RgbImage};
 use phalanx::{
-    Estimate, Estimator, Framing, Picture, Preset, Progress, RefinedEstimate, Refiner, Segmenter,
-    Trainer, Workspace,
+    Estimate, Estimator, Framing, Picture, Preset, Progress, RefinedEstimate, Refiner, Trainer,
+    Workspace,
 };
 use phalanx_camera::{Rig, Volume};
 use phalanx_hand::HandShape;
 use phalanx_refine::{NuisanceParameters, PoseFit, PoseFitSettings};
-use phalanx_segmentation::{ForearmCue, SkinModel};
+use phalanx_segmentation::{ForearmCue, Mask, SkinModel};
 
 use super::deviation::PoseCovariance;
 use super::method::{Found, Method, Outcome, Sequence, each_frame};
@@ -26,7 +26,7 @@ const GOOD_OVERLAP: f64 = 0.8;
 pub struct Product {
     estimator: Estimator,
     refiner: Refiner,
-    skin: Segmenter,
+    skin: SkinModel,
 }
 
 impl Product {
@@ -47,7 +47,7 @@ impl Product {
             ..PoseFitSettings::default()
         };
         let refiner = Refiner::for_estimator(&estimator, refinement)?;
-        Ok(Self { estimator, refiner, skin: Segmenter::Skin(SkinModel::builtin()) })
+        Ok(Self { estimator, refiner, skin: SkinModel::builtin() })
     }
 
     fn estimate(
@@ -58,7 +58,7 @@ impl Product {
     ) -> Result<Estimate> {
         Ok(match input {
             Input::Masks => {
-                let masks: Vec<GrayImage> = pictures.iter().map(phalanx::mask_from).collect();
+                let masks: Vec<Mask> = pictures.iter().map(phalanx::mask_from).collect();
                 let masks: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
                 self.estimator.estimate(&masks, workspace)?
             }

@@ -2,9 +2,9 @@
 
 use anyhow::{Context, Result};
 use glam::{DVec2, DVec3};
-use image::{DynamicImage, GrayImage};
+use image::DynamicImage;
 use phalanx_hand::JOINTS;
-use phalanx_segmentation::{AdaptedSkin, SkinModel};
+use phalanx_segmentation::{AdaptedSkin, Mask, SkinModel};
 use rayon::prelude::*;
 
 use super::angles;
@@ -180,9 +180,9 @@ impl<'a> Scorer<'a> {
     }
 
     /// The take's mask of a frame or, where it has none, skin in its photograph.
-    fn mask(&self, camera: &TakeCamera, frame: &FrameName) -> Result<Option<GrayImage>> {
+    fn mask(&self, camera: &TakeCamera, frame: &FrameName) -> Result<Option<Mask>> {
         if let Some(mask) = camera.mask(frame)? {
-            return Ok(Some(mask.to_luma8()));
+            return Ok(Some(mask.to_luma8().into()));
         }
         let photograph = camera.photograph(frame)?.as_ref().map(DynamicImage::to_rgb8);
         Ok(photograph

@@ -5,11 +5,11 @@ use std::sync::OnceLock;
 
 use anyhow::{Result, anyhow};
 use glam::DVec3;
-use image::{DynamicImage, GrayImage};
+use image::DynamicImage;
 use phalanx::{FrameFit, Progress, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take};
 use phalanx_camera::Camera;
 use phalanx_hand::HandShape;
-use phalanx_segmentation::{AdaptedSkin, SkinModel};
+use phalanx_segmentation::{AdaptedSkin, Mask, SkinModel};
 
 use super::method::{Found, Method, Outcome, Sequence, each_frame};
 use super::take::Input;
@@ -56,9 +56,9 @@ impl Fits {
 
     /// What the cameras saw, as masks.
     fn frame(&self, input: Input, pictures: &[DynamicImage]) -> TakeFrame {
-        let mask = |picture: &DynamicImage| -> GrayImage {
+        let mask = |picture: &DynamicImage| -> Mask {
             match input {
-                Input::Masks => picture.to_luma8(),
+                Input::Masks => picture.to_luma8().into(),
                 Input::Photographs => {
                     let photograph = picture.to_rgb8();
                     AdaptedSkin::new(&self.skin, &photograph).segment(&photograph)

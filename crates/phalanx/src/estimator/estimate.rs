@@ -1,11 +1,10 @@
 //! The fitted estimator: from one picture per camera to a pose.
 
 use glam::DVec3;
-use image::GrayImage;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
 use phalanx_rvm::ResidualKde;
-use phalanx_segmentation::Silhouette;
+use phalanx_segmentation::{Mask, Silhouette};
 
 use crate::error::{Error, Result};
 use crate::estimator::observation::{Observation, ObservedView};
@@ -183,7 +182,7 @@ impl Estimator {
     }
 
     /// The raw masks of pictures, as large as they are.
-    fn masks(&self, pictures: &[Picture<'_>]) -> Result<Vec<GrayImage>> {
+    fn masks(&self, pictures: &[Picture<'_>]) -> Result<Vec<Mask>> {
         let mask = |(view, picture): (usize, &Picture<'_>)| {
             picture.mask().map_err(|reason| Error::Silhouette { camera: self.camera(view), reason })
         };

@@ -1,9 +1,8 @@
 //! From one camera's picture to its shape contexts (§ 2 of the paper).
 
-use image::GrayImage;
 use phalanx_camera::{Camera, Intrinsics};
 use phalanx_segmentation::{
-    Cleanup, CropWindow, MIN_SIDE, Silhouette, clean_into, downsample, downsample_mask,
+    Cleanup, CropWindow, MIN_SIDE, Mask, Silhouette, clean_into, downsample, downsample_mask,
 };
 use phalanx_shape_context::{Descriptors, Orientation, ShapeContexts};
 use serde::{Deserialize, Serialize};
@@ -91,7 +90,7 @@ pub fn working_camera(camera: &Camera) -> Result<Camera> {
 #[derive(Debug, Clone, Default)]
 pub struct Describer {
     cleaning: phalanx_segmentation::Workspace,
-    cleaned: GrayImage,
+    cleaned: Mask,
     outline: Vec<[f64; 2]>,
     contexts: ShapeContexts,
 }
@@ -130,7 +129,7 @@ impl Describer {
     /// No hand, no contour, no forearm: as [`phalanx_segmentation::Error`] names them.
     pub fn silhouette_of_mask(
         &mut self,
-        mask: &GrayImage,
+        mask: &Mask,
         silhouette: &mut Silhouette,
     ) -> Result<(), phalanx_segmentation::Error> {
         clean_into(mask, &Cleanup::default(), &mut self.cleaning, &mut self.cleaned)?;

@@ -1,7 +1,6 @@
 //! Where in the picture the hand is, coarsely.
 
-use image::GrayImage;
-
+use phalanx_segmentation::Mask;
 /// Cells of the grid, across and down: five pixels wide and high at
 /// [`WORKING_SIZE`](crate::WORKING_SIZE).
 const CELLS: (u32, u32) = (24, 18);
@@ -12,7 +11,7 @@ pub(crate) const OCCUPANCY: usize = (CELLS.0 * CELLS.1) as usize;
 ///
 /// # Panics
 /// If `out` is not [`OCCUPANCY`] long.
-pub(crate) fn occupancy_into(mask: &GrayImage, out: &mut [f64]) {
+pub(crate) fn occupancy_into(mask: &Mask, out: &mut [f64]) {
     assert_eq!(out.len(), OCCUPANCY, "one number for each cell");
     let (width, height) = mask.dimensions();
     let edge = |cell: u32, cells: u32, length: u32| (cell * length / cells) as usize;
@@ -22,8 +21,9 @@ pub(crate) fn occupancy_into(mask: &GrayImage, out: &mut [f64]) {
         for (column, cell) in (0..).zip(cells) {
             let (left, right) = (edge(column, CELLS.0, width), edge(column + 1, CELLS.0, width));
             let line = |y: usize| &mask.as_raw()[y * width as usize..][left..right];
-            let hand: usize =
-                (top..bottom).map(|y| line(y).iter().filter(|&&level| level > 127).count()).sum();
+            let hand: usize = (top..bottom)
+                .map(|y| line(y).iter().filter(|&&level| Mask::is_hand_level(level)).count())
+                .sum();
             let pixels = (bottom - top) * (right - left);
             *cell = hand as f64 / pixels.max(1) as f64;
         }
@@ -32,14 +32,12 @@ pub(crate) fn occupancy_into(mask: &GrayImage, out: &mut [f64]) {
 
 #[cfg(test)]
 mod tests {
-    use image::Luma;
-
     use super::*;
 
     #[test]
     fn each_cell_tells_its_share() {
         let hand = |x: u32, y: u32| x < 60 && (y < 45 || x.is_multiple_of(5));
-        let mask = GrayImage::from_fn(120, 90, |x, y| Luma([if hand(x, y) { 255 } else { 0 }]));
+        let mask = Mask::from_fn(120, 90, hand);
         let mut cells = vec![f64::NAN; OCCUPANCY];
         occupancy_into(&mask, &mut cells);
         for (place, cell) in cells.into_iter().enumerate() {
@@ -56,7 +54,7 @@ mod tests {
     #[test]
     fn any_size_has_as_many_cells() {
         for (width, height) in [(16, 16), (640, 480), (121, 91)] {
-            let mask = GrayImage::from_pixel(width, height, Luma([255]));
+            let mask = Mask::from_fn(width, height, |_, _| true);
             let mut cells = vec![f64::NAN; OCCUPANCY];
             occupancy_into(&mask, &mut cells);
             assert!(cells.iter().all(|cell| *cell == 0.0 || *cell == 1.0));

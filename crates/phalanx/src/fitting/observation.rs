@@ -1,10 +1,9 @@
 //! One frame as all cameras see it, and what it tells of a hand in space.
 
 use glam::{DAffine3, DVec3};
-use image::GrayImage;
 use phalanx_camera::Camera;
 use phalanx_hand::{HandShape, Pose};
-use phalanx_segmentation::{HandDetection, HandDetector};
+use phalanx_segmentation::{HandDetection, HandDetector, Mask};
 
 use crate::localize::{Arm, BoundingSphere, Detections, HandCrop, Placement, associate};
 use crate::{Error, Result};
@@ -69,7 +68,7 @@ impl Sight {
     ///
     /// # Errors
     /// Another number of masks than cameras.
-    pub(super) fn of(cameras: &[Camera], masks: &[Option<GrayImage>]) -> Result<Self> {
+    pub(super) fn of(cameras: &[Camera], masks: &[Option<Mask>]) -> Result<Self> {
         if masks.len() != cameras.len() {
             let cameras = cameras.iter().map(|camera| camera.name.clone()).collect();
             return Err(Error::PictureCount { cameras, found: masks.len() });

@@ -1,10 +1,10 @@
 //! Whole takes: the hand first, then all frames, each in the light of its neighbours.
 
 use glam::DAffine3;
-use image::GrayImage;
 use phalanx_camera::{Camera, Volume};
 use phalanx_hand::HandShape;
 use phalanx_refine::{PoseFitSettings, PosePrior};
+use phalanx_segmentation::Mask;
 use rayon::prelude::*;
 
 use super::borders;
@@ -23,7 +23,7 @@ use crate::{Error, Progress, Result};
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TakeFrame {
     /// One for each camera.
-    pub masks: Vec<Option<GrayImage>>,
+    pub masks: Vec<Option<Mask>>,
 }
 
 /// How takes are fitted.

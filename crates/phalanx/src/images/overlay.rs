@@ -1,7 +1,7 @@
 //! Drawing what was seen and estimated over a picture.
 
 use image::{Rgb, RgbImage};
-use phalanx_segmentation::{CropWindow, Silhouette};
+use phalanx_segmentation::{CropWindow, Mask, Silhouette};
 use phalanx_shape_context::hand_axis;
 
 use crate::features::describer::{OrientationRule, WORKING_SIZE};
@@ -126,7 +126,7 @@ impl Similarity {
 fn area_and_centroid(silhouette: &Silhouette) -> (f64, [f64; 2]) {
     let (mut area, mut sum) = (0.0, [0.0; 2]);
     for (x, y, level) in silhouette.mask.enumerate_pixels() {
-        if level.0[0] > 127 {
+        if Mask::is_hand_level(level.0[0]) {
             area += 1.0;
             sum[0] += f64::from(x) + 0.5;
             sum[1] += f64::from(y) + 0.5;

@@ -1,7 +1,7 @@
 //! What a camera gives.
 
-use image::{DynamicImage, GrayImage, RgbImage};
-use phalanx_segmentation::{AdaptedSkin, BackgroundModel, PlainBackground, SkinModel};
+use image::{DynamicImage, RgbImage};
+use phalanx_segmentation::{BackgroundModel, Mask, PlainBackground, Segment, SkinModel};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
@@ -10,9 +10,9 @@ use crate::error::Result;
 #[derive(Debug, Clone, Copy)]
 pub enum Picture<'a> {
     /// A colour photograph and how to find the hand in it.
-    Photograph(&'a RgbImage, &'a Segmenter),
-    /// A silhouette: over 127 is hand.
-    Mask(&'a GrayImage),
+    Photograph(&'a RgbImage, &'a dyn Segment),
+    /// A silhouette.
+    Mask(&'a Mask),
 }
 
 impl Picture<'_> {
@@ -25,7 +25,7 @@ impl Picture<'_> {
     }
 
     /// The raw mask, as large as the picture.
-    pub(crate) fn mask(&self) -> Result<GrayImage, phalanx_segmentation::Error> {
+    pub(crate) fn mask(&self) -> Result<Mask, phalanx_segmentation::Error> {
         match self {
             Self::Photograph(image, segmenter) => segmenter.segment(image),
             Self::Mask(mask) => Ok((*mask).clone()),
@@ -42,14 +42,14 @@ impl Picture<'_> {
 /// // Black where it is opaque, black where it is not.
 /// let alpha = RgbaImage::from_fn(4, 1, |x, _| Rgba([0, 0, 0, if x < 3 { 255 } else { 0 }]));
 /// let mask = phalanx::mask_from(&DynamicImage::from(alpha));
-/// assert_eq!(mask.into_raw(), [255, 255, 255, 0]);
+/// assert!(mask.is_hand(2, 0) && !mask.is_hand(3, 0));
 /// ```
-pub fn mask_from(picture: &DynamicImage) -> GrayImage {
-    let mut mask = picture.to_luma8();
+pub fn mask_from(picture: &DynamicImage) -> Mask {
+    let mut mask = Mask::from(picture.to_luma8());
     let Some(alpha) = varying_alpha(picture) else { return mask };
-    let opaque = |alpha: u8| alpha > 127;
+    let opaque = Mask::is_hand_level;
     let levels = || mask.iter().zip(&alpha).filter(|&(_, &alpha)| opaque(alpha));
-    let is_bright = |&(level, _): &(&u8, &u8)| *level > 127;
+    let is_bright = |&(level, _): &(&u8, &u8)| Mask::is_hand_level(*level);
     let is_one_colour =
         levels().all(|pair| is_bright(&pair)) || !levels().any(|pair| is_bright(&pair));
     for (level, alpha) in mask.iter_mut().zip(alpha) {
@@ -94,16 +94,12 @@ pub enum Segmenter {
     PlainBackground(PlainBackground),
 }
 
-impl Segmenter {
-    /// The raw mask of a picture, as large as it is.
-    ///
-    /// # Errors
-    /// A background of another size, or a wall that cannot be told from a hand.
-    pub fn segment(&self, image: &RgbImage) -> Result<GrayImage, phalanx_segmentation::Error> {
+impl Segment for Segmenter {
+    fn segment(&self, picture: &RgbImage) -> phalanx_segmentation::Result<Mask> {
         match self {
-            Self::Skin(model) => Ok(AdaptedSkin::new(model, image).segment(image)),
-            Self::Background(model) => model.segment(image),
-            Self::PlainBackground(wall) => wall.segment(image),
+            Self::Skin(model) => Segment::segment(model, picture),
+            Self::Background(model) => model.segment(picture),
+            Self::PlainBackground(background) => background.segment(picture),
         }
     }
 }

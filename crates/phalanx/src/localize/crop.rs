@@ -1,9 +1,9 @@
 //! What a camera sees of a hand in space.
 
 use glam::{DVec2, DVec3};
-use image::GrayImage;
 use phalanx_camera::{Camera, Intrinsics, PixelMap};
 use phalanx_refine::SilhouetteObservation;
+use phalanx_segmentation::Mask;
 
 use super::arm::Arm;
 use super::exits::Exits;
@@ -33,9 +33,9 @@ pub struct HandCrop {
     /// The virtual camera, square.
     pub camera: Camera,
     /// 255 where the mask covers at least half of a pixel.
-    pub mask: GrayImage,
+    pub mask: Mask,
     /// 255 where the picture reaches.
-    inside: GrayImage,
+    inside: Mask,
     /// How many of the picture's pixels one of the crop's is wide.
     grain: f64,
     /// Where what is seen leaves the picture.
@@ -47,7 +47,7 @@ impl HandCrop {
     ///
     /// # Errors
     /// A ball that is not before the camera.
-    pub fn onto(camera: &Camera, mask: &GrayImage, ball: BoundingSphere) -> Result<Self> {
+    pub fn onto(camera: &Camera, mask: &Mask, ball: BoundingSphere) -> Result<Self> {
         let offset = ball.middle - camera.centre();
         let in_camera = camera.extrinsics.to_camera(ball.middle);
         if in_camera.z <= 0.0 {
@@ -61,7 +61,7 @@ impl HandCrop {
             camera.turned(offset, right, Intrinsics::pinhole(SIDE, SIDE, focal))?;
         let to_picture = PixelMap::between(&virtual_camera, camera);
         let size = (SIDE, SIDE);
-        let mut seen = GrayImage::new(SIDE, SIDE);
+        let mut seen = Mask::new(SIDE, SIDE);
         resample::resample(mask, &to_picture, &mut seen);
         Ok(Self {
             inside: resample::inside(&to_picture, size, mask.dimensions()),
@@ -74,12 +74,12 @@ impl HandCrop {
 
     /// How many of the crop's pixels the mask fills.
     pub(crate) fn filled(&self) -> u32 {
-        self.mask.iter().map(|&pixel| u32::from(pixel > 127)).sum()
+        self.mask.area() as u32
     }
 
     /// Whether the ball holds most of a mask of the picture.
-    pub(crate) fn holds_most_of(&self, mask: &GrayImage) -> bool {
-        let all = mask.iter().filter(|&&pixel| pixel > 127).count() as f64;
+    pub(crate) fn holds_most_of(&self, mask: &Mask) -> bool {
+        let all = mask.area() as f64;
         f64::from(self.filled()) * self.grain * self.grain > 0.5 * all
     }
 
@@ -95,9 +95,8 @@ impl HandCrop {
     /// A mask without a border that is known.
     pub fn evidence(&self, arm: &Arm) -> Result<SilhouetteObservation> {
         let covered = arm.seen_by(&self.camera);
-        let known = |at: DVec2| {
-            self.inside.get_pixel(at.x as u32, at.y as u32).0[0] > 127 && !covered.covers(at)
-        };
+        let known =
+            |at: DVec2| self.inside.is_hand(at.x as u32, at.y as u32) && !covered.covers(at);
         let evidence = SilhouetteObservation::within(&self.camera, &self.mask, known)?;
         Ok(evidence.resampled(1.0 / self.grain))
     }

@@ -1,9 +1,8 @@
 //! What may be a hand in one camera's mask.
 
 use glam::{DVec2, DVec3};
-use image::GrayImage;
 use phalanx_camera::Camera;
-use phalanx_segmentation::{Cleanup, HandDetection, HandDetector, WristModel};
+use phalanx_segmentation::{Cleanup, HandDetection, HandDetector, Mask, WristModel};
 
 /// What may be a hand in one picture. All pixels are those of `camera`, which is the camera resized to
 /// the picture, so that they cannot be taken for those of a picture of another size.
@@ -14,7 +13,7 @@ pub struct Detections {
     /// The candidates, the likeliest first; none where nothing is as large as a hand.
     pub hands: Vec<HandDetection>,
     /// The picture's mask: hand is over 127.
-    mask: GrayImage,
+    mask: Mask,
 }
 
 /// The candidates of a view that are considered. Three wrists along an arm from either of its ends
@@ -23,7 +22,7 @@ const MOST: usize = 6;
 
 impl Detections {
     /// Looks for hands in a camera's mask of any size.
-    pub fn find(camera: &Camera, mask: &GrayImage, finder: &mut HandDetector) -> Self {
+    pub fn find(camera: &Camera, mask: &Mask, finder: &mut HandDetector) -> Self {
         let (width, height) = mask.dimensions();
         let camera = camera.with_intrinsics(camera.intrinsics.resized(width, height));
         // What is no hand is an answer here, not an error: other views may see one.
@@ -37,7 +36,7 @@ impl Detections {
 
     /// Those of a camera that saw nothing.
     pub fn none(camera: &Camera) -> Self {
-        Self { camera: camera.clone(), hands: Vec::new(), mask: GrayImage::default() }
+        Self { camera: camera.clone(), hands: Vec::new(), mask: Mask::default() }
     }
 
     /// Whether a point of the world is seen within the mask.
@@ -47,6 +46,6 @@ impl Detections {
         let is_inside = pixel.cmpge(DVec2::ZERO).all()
             && pixel.x < f64::from(width)
             && pixel.y < f64::from(height);
-        is_inside && self.mask.get_pixel(pixel.x as u32, pixel.y as u32).0[0] > 127
+        is_inside && self.mask.is_hand(pixel.x as u32, pixel.y as u32)
     }
 }

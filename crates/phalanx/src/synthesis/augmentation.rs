@@ -1,10 +1,10 @@
 //! What can be otherwise than in training: other hands, cameras that have moved, ragged
 //! silhouettes. All of it is here.
 
+use phalanx_segmentation::Mask;
 use std::ops::RangeInclusive;
 
 use glam::{DAffine3, DQuat, DVec3};
-use image::GrayImage;
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{HandShape, Pose};
 use serde::{Deserialize, Serialize};
@@ -150,7 +150,7 @@ fn around(pixels: &[u8], width: usize, pick: impl Fn(u8, u8) -> u8) -> Vec<u8> {
 }
 
 /// Makes a silhouette [`MaskNoise::Boundary`].
-pub(crate) fn make_ragged(mask: &mut GrayImage, seed: u64) {
+pub(crate) fn make_ragged(mask: &mut Mask, seed: u64) {
     const IN_BAND: f64 = 0.15;
     const ANYWHERE: f64 = 0.002;
     let mut random = ItemRng::new(seed, 0);
@@ -162,41 +162,40 @@ pub(crate) fn make_ragged(mask: &mut GrayImage, seed: u64) {
     };
     let (least, most) = (around(&moved, width, u8::min), around(&moved, width, u8::max));
     for (((level, moved), least), most) in mask.iter_mut().zip(moved).zip(least).zip(most) {
-        let in_band = (least > 127) != (most > 127);
+        let in_band = Mask::is_hand_level(least) != Mask::is_hand_level(most);
         let flips = (random.uniform() < IN_BAND && in_band) != (random.uniform() < ANYWHERE);
-        *level = if (moved > 127) == flips { 0 } else { 255 };
+        *level = if Mask::is_hand_level(moved) == flips { 0 } else { 255 };
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use image::Luma;
+    use image::{GrayImage, Luma};
 
     use super::*;
 
     /// As it is told, pixel by pixel.
-    fn slow(mask: &GrayImage, seed: u64) -> GrayImage {
+    fn slow(mask: &Mask, seed: u64) -> Mask {
         let (width, height) = mask.dimensions();
-        let around = |mask: &GrayImage, x: u32, y: u32| -> Vec<bool> {
+        let around = |mask: &Mask, x: u32, y: u32| -> Vec<bool> {
             let rows = y.saturating_sub(1)..(y + 2).min(height);
             let columns = x.saturating_sub(1)..(x + 2).min(width);
             let places = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
-            places.map(|(x, y)| mask.get_pixel(x, y).0[0] > 127).collect()
+            places.map(|(x, y)| mask.is_hand(x, y)).collect()
         };
-        let level = |hand: bool| Luma([if hand { 255 } else { 0 }]);
         let mut random = ItemRng::new(seed, 0);
         let choice = random.below(3);
-        let moved = GrayImage::from_fn(width, height, |x, y| match choice {
-            0 => level(around(mask, x, y).iter().all(|&hand| hand)),
-            1 => level(around(mask, x, y).iter().any(|&hand| hand)),
-            _ => *mask.get_pixel(x, y),
+        let moved = Mask::from_fn(width, height, |x, y| match choice {
+            0 => around(mask, x, y).iter().all(|&hand| hand),
+            1 => around(mask, x, y).iter().any(|&hand| hand),
+            _ => mask.is_hand(x, y),
         });
-        GrayImage::from_fn(width, height, |x, y| {
-            let hand = moved.get_pixel(x, y).0[0] > 127;
+        Mask::from_fn(width, height, |x, y| {
+            let hand = moved.is_hand(x, y);
             let flips_in_band = random.uniform() < 0.15;
             let flips_anywhere = random.uniform() < 0.002;
             let in_band = around(&moved, x, y).contains(&!hand);
-            level(hand != ((flips_in_band && in_band) != flips_anywhere))
+            hand != ((flips_in_band && in_band) != flips_anywhere)
         })
     }
 
@@ -209,6 +208,7 @@ mod tests {
                 let patches: Vec<u8> = (0..80).map(|_| levels[random.below(6)]).collect();
                 let patch = |x: u32, y: u32| patches[(x / 4 + 8 * (y / 4)) as usize];
                 let mask = GrayImage::from_fn(width, height, |x, y| Luma([patch(x, y)]));
+                let mask = Mask::from(mask);
                 let mut ragged = mask.clone();
                 make_ragged(&mut ragged, seed);
                 assert_eq!(ragged, slow(&mask, seed), "{width}×{height}, seed {seed}");

@@ -1,11 +1,10 @@
 //! Synthetic views: every pose drawn through every camera and described.
 
 use glam::DAffine3;
-use image::GrayImage;
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{HandShape, Pose};
 use phalanx_render::Renderer;
-use phalanx_segmentation::Silhouette;
+use phalanx_segmentation::{Mask, Silhouette};
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
@@ -52,11 +51,12 @@ pub fn draw_silhouette(
     hand: &HandShape,
     pose: &Pose,
     rest: &DAffine3,
-) -> Result<GrayImage> {
+) -> Result<Mask> {
     let camera = working_camera(camera)?;
     let solids = hand.pose(pose, rest).primitives;
     Renderer::new(&camera)
         .and_then(|mut renderer| renderer.silhouette(&solids))
+        .map(Mask::from)
         .map_err(|reason| Error::Render { camera: camera.name.clone(), reason })
 }
 
@@ -66,7 +66,7 @@ pub struct SceneDescriber {
     view_config: ViewConfig,
     cameras: Vec<Camera>,
     renderers: Vec<Renderer>,
-    drawn: Vec<GrayImage>,
+    drawn: Vec<Mask>,
     describer: Describer,
     windows: DrawnWindows,
     silhouettes: Vec<Silhouette>,
@@ -91,7 +91,7 @@ impl SceneDescriber {
         Ok(Self {
             view_config,
             renderers: cameras.iter().map(renderer).collect::<Result<_>>()?,
-            drawn: vec![GrayImage::default(); cameras.len()],
+            drawn: vec![Mask::default(); cameras.len()],
             describer: Describer::default(),
             windows: match view_config.framing {
                 Framing::Picture => DrawnWindows::default(),
@@ -142,7 +142,7 @@ impl SceneDescriber {
     ///
     /// # Errors
     /// Another number of views than cameras.
-    pub fn masks(&mut self, scene: &Scene) -> Result<&[GrayImage]> {
+    pub fn masks(&mut self, scene: &Scene) -> Result<&[Mask]> {
         self.draw(scene)?;
         Ok(&self.drawn)
     }

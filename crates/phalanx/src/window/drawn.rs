@@ -1,11 +1,10 @@
 //! Drawn hands as windows show them, without the pictures that the windows look into.
 
 use glam::DVec2;
-use image::GrayImage;
 use phalanx_camera::{Camera, Intrinsics, PixelMap};
 use phalanx_hand::Primitive;
 use phalanx_render::Renderer;
-use phalanx_segmentation::{Cleanup, Silhouette, Workspace, clean_into, downsample_mask};
+use phalanx_segmentation::{Cleanup, Mask, Silhouette, Workspace, clean_into, downsample_mask};
 
 use super::{Window, WindowFinder, resample};
 use crate::synthesis::augmentation::make_ragged;
@@ -40,10 +39,10 @@ pub(crate) struct DrawnWindows {
     cameras: Vec<Camera>,
     /// For the small pictures.
     renderers: Vec<Renderer>,
-    small: Vec<GrayImage>,
+    small: Vec<Mask>,
     finder: WindowFinder,
-    drawn: GrayImage,
-    cleaned: GrayImage,
+    drawn: Mask,
+    cleaned: Mask,
     cleaning: Workspace,
     describer: Describer,
 }
@@ -56,7 +55,7 @@ impl DrawnWindows {
         Ok(Self {
             cameras: cameras.to_vec(),
             renderers: cameras.iter().map(renderer).collect::<Result<_>>()?,
-            small: vec![GrayImage::default(); cameras.len()],
+            small: vec![Mask::default(); cameras.len()],
             ..Self::default()
         })
     }
@@ -97,7 +96,7 @@ impl DrawnWindows {
     }
 
     /// The mask of [`WORKING_SIZE`] that a window onto the picture of a camera shows.
-    fn draw(&mut self, number: usize, window: &Window, view: &DrawnView) -> Result<GrayImage> {
+    fn draw(&mut self, number: usize, window: &Window, view: &DrawnView) -> Result<Mask> {
         let camera = &self.cameras[number];
         let aside =
             resample::pixels_aside(&PixelMap::between(&window.camera, camera), WORKING_SIZE);

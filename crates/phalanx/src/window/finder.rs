@@ -1,9 +1,8 @@
 //! From all cameras' masks to a window on the hand in each.
 
 use glam::DVec3;
-use image::GrayImage;
 use phalanx_camera::Camera;
-use phalanx_segmentation::{Cleanup, HandDetector, Silhouette, WristModel};
+use phalanx_segmentation::{Cleanup, HandDetector, Mask, Silhouette, WristModel};
 
 use super::{Window, choice};
 use crate::{Describer, Error, Result};
@@ -13,7 +12,7 @@ use crate::{Describer, Error, Result};
 pub struct WindowFinder {
     finders: Vec<HandDetector>,
     describer: Describer,
-    seen: GrayImage,
+    seen: Mask,
 }
 
 impl WindowFinder {
@@ -27,7 +26,7 @@ impl WindowFinder {
     pub fn find(
         &mut self,
         cameras: &[Camera],
-        masks: &[GrayImage],
+        masks: &[Mask],
         last: Option<DVec3>,
     ) -> Result<Vec<Window>> {
         self.finders.resize_with(cameras.len(), HandDetector::default);

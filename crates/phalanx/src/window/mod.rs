@@ -7,10 +7,9 @@ mod layout;
 pub(crate) mod resample;
 
 use glam::DVec2;
-use image::GrayImage;
 use phalanx_camera::{Camera, PixelMap};
 use phalanx_refine::SilhouetteObservation;
-use phalanx_segmentation::{HandDetection, Silhouette};
+use phalanx_segmentation::{HandDetection, Mask, Silhouette};
 use serde::{Deserialize, Serialize};
 
 use crate::{Result, WORKING_SIZE};
@@ -76,9 +75,9 @@ impl Window {
     }
 
     /// A mask of the picture as the window shows it: 255 where at least half of a pixel is hand.
-    pub fn resample(&self, mask: &GrayImage, seen: &mut GrayImage) {
+    pub fn resample(&self, mask: &Mask, seen: &mut Mask) {
         if seen.dimensions() != WORKING_SIZE {
-            *seen = GrayImage::new(WORKING_SIZE.0, WORKING_SIZE.1);
+            *seen = Mask::new(WORKING_SIZE.0, WORKING_SIZE.1);
         }
         resample::resample(mask, &self.to_picture, seen);
     }
@@ -89,7 +88,7 @@ impl Window {
     /// A silhouette of another size than the window, or without a border.
     pub fn evidence(&self, silhouette: &Silhouette) -> Result<SilhouetteObservation> {
         let inside = resample::inside(&self.to_picture, WORKING_SIZE, self.picture());
-        let known = |at: DVec2| inside.get_pixel(at.x as u32, at.y as u32).0[0] > 127;
+        let known = |at: DVec2| inside.is_hand(at.x as u32, at.y as u32);
         let evidence = SilhouetteObservation::within(&self.camera, &silhouette.mask, known)?;
         Ok(evidence.resampled(1.0 / resample::pixels_aside(&self.to_picture, WORKING_SIZE)))
     }

@@ -1,8 +1,8 @@
 //! A mask as another camera at the same place sees it.
 
 use glam::DVec2;
-use image::GrayImage;
 use phalanx_camera::PixelMap;
+use phalanx_segmentation::Mask;
 
 /// Samples along a row between places where the map is evaluated; it is straight in between, to far
 /// less than a pixel.
@@ -13,7 +13,7 @@ const MOST_SAMPLES: u32 = 4;
 
 /// Fills `seen` with the mask under a map from its pixels to the mask's: 255 where the mask covers at
 /// least half of a pixel. There is nothing outside the mask.
-pub(crate) fn resample(mask: &GrayImage, to_mask: &PixelMap, seen: &mut GrayImage) {
+pub(crate) fn resample(mask: &Mask, to_mask: &PixelMap, seen: &mut Mask) {
     let (width, height) = seen.dimensions();
     let samples = samples_aside(to_mask, (width, height));
     let mut row = Vec::with_capacity((width * samples) as usize);
@@ -40,11 +40,11 @@ pub(crate) fn inside(
     to_picture: &PixelMap,
     (width, height): (u32, u32),
     picture: (u32, u32),
-) -> GrayImage {
+) -> Mask {
     let least = DVec2::splat(1.5 * pixels_aside(to_picture, (width, height)));
     let most = DVec2::new(f64::from(picture.0), f64::from(picture.1)) - least;
     let mut row = Vec::with_capacity(width as usize);
-    let mut inside = GrayImage::new(width, height);
+    let mut inside = Mask::new(width, height);
     for (y, line) in inside.chunks_exact_mut(width as usize).enumerate() {
         positions(to_picture, y as f64 + 0.5, width, 1.0, &mut row);
         for (pixel, at) in line.iter_mut().zip(&row) {
@@ -56,7 +56,7 @@ pub(crate) fn inside(
 }
 
 /// Leaves nothing of a mask outside the picture, of this width and height, that its pixels are mapped to.
-pub(super) fn cut(mask: &mut GrayImage, to_picture: &PixelMap, picture: DVec2) {
+pub(super) fn cut(mask: &mut Mask, to_picture: &PixelMap, picture: DVec2) {
     let width = mask.width();
     let mut row = Vec::with_capacity(width as usize);
     for (y, line) in mask.chunks_exact_mut(width as usize).enumerate() {
@@ -101,7 +101,7 @@ fn positions(to_mask: &PixelMap, y: f64, count: u32, per_pixel: f64, row: &mut V
 }
 
 /// How much of the mask's pixels around a position is hand, 0 to 1, weighted by nearness.
-fn level(mask: &GrayImage, position: DVec2) -> f64 {
+fn level(mask: &Mask, position: DVec2) -> f64 {
     let corner = position - 0.5;
     let (width, height) = (f64::from(mask.width()), f64::from(mask.height()));
     // A NaN is not inside.
@@ -116,7 +116,7 @@ fn level(mask: &GrayImage, position: DVec2) -> f64 {
         let (x, y) = (x + dx, y + dy);
         let within =
             (0..i64::from(mask.width())).contains(&x) && (0..i64::from(mask.height())).contains(&y);
-        if within && mask.get_pixel(x as u32, y as u32).0[0] > 127 { 1.0 } else { 0.0 }
+        if within && mask.is_hand(x as u32, y as u32) { 1.0 } else { 0.0 }
     };
     let row = |dy: i64| (1.0 - share.x) * hand(0, dy) + share.x * hand(1, dy);
     (1.0 - share.y) * row(0) + share.y * row(1)

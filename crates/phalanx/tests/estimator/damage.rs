@@ -1,22 +1,22 @@
 //! Damaged scenes: each part of the damage does what it says, and no more.
 
 use glam::DVec3;
-use image::GrayImage;
 use phalanx::{
     Augmentation, FixedPoses, MaskNoise, OrientationRule, Scene, SceneDescriber, SceneSource,
     ShapeVariation, draw_silhouette,
 };
 use phalanx_camera::{Camera, Extrinsics};
 use phalanx_hand::{HandShape, Pose};
+use phalanx_segmentation::Mask;
 
 use crate::desk::{rig as desk, unseen};
 
-fn masks(scene: &Scene) -> Vec<GrayImage> {
+fn masks(scene: &Scene) -> Vec<Mask> {
     let mut describer = SceneDescriber::new(&desk(), OrientationRule::default()).unwrap();
     describer.silhouettes(scene).unwrap().map(|silhouette| silhouette.mask.clone()).collect()
 }
 
-fn overlap(a: &GrayImage, b: &GrayImage) -> f64 {
+fn overlap(a: &Mask, b: &Mask) -> f64 {
     let pixels = || a.iter().zip(b.iter()).map(|(a, b)| (*a > 127, *b > 127));
     let both = pixels().filter(|&(a, b)| a && b).count();
     both as f64 / pixels().filter(|&(a, b)| a || b).count() as f64

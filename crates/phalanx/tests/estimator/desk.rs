@@ -1,8 +1,8 @@
 //! The desk rig, a hand that closes, and an estimator learnt from it.
 
+use phalanx_segmentation::Mask;
 use std::sync::LazyLock;
 
-use image::GrayImage;
 use phalanx::{
     Estimate, Estimator, NoProgress, OrientationRule, Picture, RegressorConfig, Training,
     Workspace, draw_silhouette,
@@ -79,7 +79,7 @@ pub(crate) static UNTURNED: LazyLock<Estimator> =
     LazyLock::new(|| learn(&top(), OrientationRule::ImageAxes));
 
 /// The masks of a pose in every camera of a rig.
-pub(crate) fn masks(rig: &Rig, pose: &Pose) -> Vec<GrayImage> {
+pub(crate) fn masks(rig: &Rig, pose: &Pose) -> Vec<Mask> {
     let rest = rig.volume.rest_frame();
     let draw = |camera| draw_silhouette(camera, &HandShape::adult(), pose, &rest).unwrap();
     rig.cameras.iter().map(draw).collect()
@@ -92,7 +92,7 @@ pub(crate) fn resized(rig: &Rig, width: u32, height: u32) -> Rig {
 }
 
 /// The estimate from masks, in memory of its own.
-pub(crate) fn estimate(estimator: &Estimator, masks: &[GrayImage]) -> phalanx::Result<Estimate> {
+pub(crate) fn estimate(estimator: &Estimator, masks: &[Mask]) -> phalanx::Result<Estimate> {
     let pictures: Vec<_> = masks.iter().map(Picture::Mask).collect();
     estimator.estimate(&pictures, &mut Workspace::default())
 }

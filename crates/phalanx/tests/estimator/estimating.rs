@@ -2,7 +2,7 @@
 
 use phalanx::{Picture, Workspace};
 use phalanx_hand::{Dof, Pose};
-use phalanx_segmentation::ForearmCue;
+use phalanx_segmentation::{ForearmCue, Mask};
 
 use crate::desk::{
     ESTIMATOR, FROM_TOP, closing, difference_deg, estimate, masks, mean, poses, rig, top, unseen,
@@ -91,7 +91,7 @@ fn a_used_workspace_changes_nothing() {
         FROM_TOP.estimate(&[Picture::Mask(&top_only[0])], &mut workspace).unwrap();
         let mut masks = masks(&rig(), &pose);
         let fresh = estimate(&ESTIMATOR, &masks).unwrap();
-        let used = |masks: &[image::GrayImage], workspace: &mut Workspace| {
+        let used = |masks: &[Mask], workspace: &mut Workspace| {
             let pictures: Vec<_> = masks.iter().map(Picture::Mask).collect();
             ESTIMATOR.estimate(&pictures, workspace)
         };

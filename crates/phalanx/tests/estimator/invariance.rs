@@ -1,14 +1,13 @@
 //! What changes nothing: where the hand is in the picture, how large, and which way up.
 
 use glam::{DMat3, DVec3};
-use image::{GrayImage, Luma};
 use phalanx::{
     Describer, Estimator, OrientationRule, Picture, Workspace, draw_silhouette, working_camera,
 };
 use phalanx_camera::{Camera, Extrinsics};
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_render::Renderer;
-use phalanx_segmentation::Silhouette;
+use phalanx_segmentation::{Mask, Silhouette};
 
 use crate::desk::{
     ESTIMATOR, FROM_TOP, UNTURNED, closing, difference_deg, estimate, masks, mean, resized, rig,
@@ -24,7 +23,9 @@ fn larger_pictures_give_nearly_the_same_pose() {
             let drawn: Vec<_> = resized(&rig(), width, height)
                 .cameras
                 .iter()
-                .map(|camera| Renderer::new(camera).unwrap().silhouette(&solids).unwrap())
+                .map(|camera| {
+                    Mask::from(Renderer::new(camera).unwrap().silhouette(&solids).unwrap())
+                })
                 .collect();
             let pictures: Vec<_> = drawn.iter().map(Picture::Mask).collect();
             let large = ESTIMATOR.estimate(&pictures, &mut Workspace::default()).unwrap();
@@ -59,11 +60,11 @@ fn a_nearer_hand_gives_nearly_the_same_pose() {
 }
 
 /// The mask with its content moved down by some rows; what enters is background.
-fn moved_down(mask: &GrayImage, rows: i64) -> GrayImage {
-    GrayImage::from_fn(mask.width(), mask.height(), |x, y| {
+fn moved_down(mask: &Mask, rows: i64) -> Mask {
+    Mask::from_fn(mask.width(), mask.height(), |x, y| {
         let row = i64::from(y) - rows;
         let inside = (0..i64::from(mask.height())).contains(&row);
-        if inside { *mask.get_pixel(x, row as u32) } else { Luma([0]) }
+        inside && mask.is_hand(x, row as u32)
     })
 }
 
@@ -89,7 +90,7 @@ fn rolled(camera: &Camera, degrees: f64) -> Camera {
     Camera { extrinsics, ..camera.clone() }
 }
 
-fn rolled_mask(pose: &Pose, degrees: f64) -> GrayImage {
+fn rolled_mask(pose: &Pose, degrees: f64) -> Mask {
     let camera = working_camera(&rolled(&top().cameras[0], degrees)).unwrap();
     draw_silhouette(&camera, &HandShape::adult(), pose, &top().volume.rest_frame()).unwrap()
 }

@@ -1,20 +1,20 @@
 //! What cannot be estimated from, by name and camera.
 
 use image::{GrayImage, Luma, RgbImage};
-use phalanx::{Descriptor, Error, Estimator, ExtraFeatures, Picture, Segmenter, Workspace};
+use phalanx::{Descriptor, Error, Estimator, ExtraFeatures, Picture, Workspace};
 use phalanx_codebook::{AnyEncoder, Codebook, SoftAssignment};
 use phalanx_multiview::ViewEncoders;
 use phalanx_rvm::Model;
-use phalanx_segmentation::{Error as Segmentation, ForearmCue, MIN_SIDE, SkinModel};
+use phalanx_segmentation::{Error as Segmentation, ForearmCue, MIN_SIDE, Mask, SkinModel};
 
 use crate::desk::{ESTIMATOR, FROM_TOP, difference_deg, estimate, masks, rig, top, unseen};
 
-fn uniform(width: u32, height: u32, level: u8) -> GrayImage {
-    GrayImage::from_pixel(width, height, Luma([level]))
+fn uniform(width: u32, height: u32, level: u8) -> Mask {
+    GrayImage::from_pixel(width, height, Luma([level])).into()
 }
 
 /// What the estimator says of this mask as the second of three.
-fn refusal(second: GrayImage) -> Error {
+fn refusal(second: Mask) -> Error {
     let mut masks = masks(&rig(), &unseen()[1]);
     masks[1] = second;
     estimate(&ESTIMATOR, &masks).unwrap_err()
@@ -58,9 +58,7 @@ fn pictures_have_their_cameras_shape() {
 #[test]
 fn tiny_pictures_are_refused_and_small_ones_are_not() {
     // Half of it hand: it would make a silhouette.
-    let half = |width, height| {
-        GrayImage::from_fn(width, height, |x, _| Luma([if x < width / 2 { 255 } else { 0 }]))
-    };
+    let half = |width, height| Mask::from_fn(width, height, |x, _| x < width / 2);
     for (width, height) in [(2, 1), (4, 3), (20, 15)] {
         let error = refusal(half(width, height));
         assert!(
@@ -90,7 +88,7 @@ fn empty_and_full_masks_are_named() {
 
 #[test]
 fn a_photograph_without_a_hand_is_named() {
-    let skin = Segmenter::Skin(SkinModel::builtin());
+    let skin = SkinModel::builtin();
     let green = RgbImage::from_pixel(120, 90, image::Rgb([30, 160, 40]));
     let pictures = [Picture::Photograph(&green, &skin)];
     let error = FROM_TOP.estimate(&pictures, &mut Workspace::default()).unwrap_err();
@@ -115,9 +113,9 @@ fn a_hand_cut_off_from_the_border_is_known_by_its_stump() {
 
 #[test]
 fn a_disc_has_no_forearm() {
-    let disc = GrayImage::from_fn(120, 90, |x, y| {
+    let disc = Mask::from_fn(120, 90, |x, y| {
         let (dx, dy) = (f64::from(x) - 60.0, f64::from(y) - 45.0);
-        Luma([if dx.hypot(dy) < 25.0 { 255 } else { 0 }])
+        dx.hypot(dy) < 25.0
     });
     let error = refusal(disc);
     assert!(error.to_string().starts_with("camera 'top': no forearm"), "{error}");

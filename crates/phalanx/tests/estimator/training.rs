@@ -87,8 +87,10 @@ fn a_left_hand_in_a_mirrored_rig_is_learnt_alike() {
     let training = training(OrientationRule::default());
     let estimator = training.run(&top(), &left, &poses(), &NoProgress).unwrap();
     let pose = unseen()[1];
-    let mirrored: Vec<_> =
-        masks(&top(), &pose).iter().map(image::imageops::flip_vertical).collect();
+    let mirrored: Vec<phalanx::Mask> = masks(&top(), &pose)
+        .iter()
+        .map(|mask| image::imageops::flip_vertical(&**mask).into())
+        .collect();
     let found = estimate(&estimator, &mirrored).unwrap();
     let error = difference_deg(&found.pose, &pose);
     assert!(error < 4.0, "{error:.2} degrees");

@@ -23,7 +23,7 @@ fn a_wide_picture_shrinks_to_what_the_working_camera_sees() {
         let camera = rig.cameras[0].with_intrinsics(intrinsics);
         for pose in unseen() {
             let solids = HandShape::adult().pose(&pose, &rest).primitives;
-            let full = Renderer::new(&camera).unwrap().silhouette(&solids).unwrap();
+            let full = Renderer::new(&camera).unwrap().silhouette(&solids).unwrap().into();
             let shrunk = downsample_mask(&full, WORKING_SIZE.0, WORKING_SIZE.1).unwrap();
             let drawn = draw_silhouette(&camera, &HandShape::adult(), &pose, &rest).unwrap();
             let differing = shrunk.iter().zip(drawn.iter()).filter(|(a, b)| a != b).count();

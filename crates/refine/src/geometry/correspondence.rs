@@ -1,9 +1,9 @@
 //! A posed hand as one camera sees it.
 
 use glam::{DAffine3, DVec2, DVec3};
-use image::GrayImage;
 use phalanx_hand::Primitive;
 use phalanx_render::Renderer;
+use phalanx_segmentation::Mask;
 
 use crate::error::{Error, Result};
 use crate::geometry::sphere_hull::{Bound, ClosestApproach, SphereHull};
@@ -53,7 +53,7 @@ impl Correspondence {
 pub(crate) struct ViewMatcher {
     renderer: Renderer,
     seen: Vec<Seen>,
-    drawn: GrayImage,
+    drawn: Mask,
     edges: Vec<DVec2>,
     /// The primitive that each observed edge was matched with last: seldom another next time.
     last: Vec<usize>,
@@ -68,7 +68,7 @@ impl ViewMatcher {
         Ok(Self {
             renderer,
             seen: Vec::new(),
-            drawn: GrayImage::default(),
+            drawn: Mask::default(),
             edges: Vec::new(),
             last: vec![0; evidence.edges().len()],
             correspondences: Vec::new(),
@@ -130,7 +130,7 @@ impl ViewMatcher {
         &mut self,
         primitives: &[Primitive],
         evidence: &SilhouetteObservation,
-        image: &mut GrayImage,
+        image: &mut Mask,
     ) -> Result<()> {
         self.renderer
             .silhouette_into(primitives, image)
@@ -138,7 +138,7 @@ impl ViewMatcher {
     }
 
     /// The silhouette that was drawn last.
-    pub(crate) fn drawn(&self) -> &GrayImage {
+    pub(crate) fn drawn(&self) -> &Mask {
         &self.drawn
     }
 }

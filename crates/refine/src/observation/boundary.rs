@@ -1,7 +1,7 @@
 //! The boundary of a silhouette: its *edges*, the middles of the pixel edges between hand and background.
 
 use glam::DVec2;
-use image::GrayImage;
+use phalanx_segmentation::Mask;
 
 /// The pixels on both sides of an edge.
 pub(crate) fn beside(edge: DVec2) -> [[u32; 2]; 2] {
@@ -9,12 +9,12 @@ pub(crate) fn beside(edge: DVec2) -> [[u32; 2]; 2] {
 }
 
 /// Whether the pixels on both sides of an edge are known.
-pub(crate) fn is_known(known: &GrayImage, edge: DVec2) -> bool {
-    beside(edge).iter().all(|&[x, y]| known.get_pixel(x, y).0[0] > 127)
+pub(crate) fn is_known(known: &Mask, edge: DVec2) -> bool {
+    beside(edge).iter().all(|&[x, y]| known.is_hand(x, y))
 }
 
 /// The middles of the pixel edges between hand and background, px, row by row.
-pub(crate) fn boundary_edges(mask: &GrayImage, edges: &mut Vec<DVec2>) {
+pub(crate) fn boundary_edges(mask: &Mask, edges: &mut Vec<DVec2>) {
     edges.clear();
     let rows: &[u8] = mask.as_raw();
     let mut above: &[u8] = &[];
@@ -35,7 +35,7 @@ fn changes(one: &[u8], other: &[u8], mut at: impl FnMut(usize)) {
         if one != other {
             let pairs = one.iter().zip(other).enumerate();
             pairs
-                .filter(|(_, (a, b))| (**a > 127) != (**b > 127))
+                .filter(|(_, (a, b))| Mask::is_hand_level(**a) != Mask::is_hand_level(**b))
                 .for_each(|(x, _)| at(PIECE * k + x));
         }
     }
@@ -43,7 +43,7 @@ fn changes(one: &[u8], other: &[u8], mut at: impl FnMut(usize)) {
 
 /// Which way the background is from an edge: from the mean of the hand's pixels around it to the
 /// edge.
-pub(crate) fn outwards(mask: &GrayImage, edge: DVec2) -> DVec2 {
+pub(crate) fn outwards(mask: &Mask, edge: DVec2) -> DVec2 {
     const RADIUS: f64 = 2.5;
     let range = |at: f64, size: u32| {
         let first = (at - RADIUS).max(0.0) as u32;
@@ -52,7 +52,7 @@ pub(crate) fn outwards(mask: &GrayImage, edge: DVec2) -> DVec2 {
     let mut sum = DVec2::ZERO;
     for y in range(edge.y, mask.height()) {
         for x in range(edge.x, mask.width()) {
-            let sign = if mask.get_pixel(x, y).0[0] > 127 { -1.0 } else { 1.0 };
+            let sign = if mask.is_hand(x, y) { -1.0 } else { 1.0 };
             sum += (DVec2::new(f64::from(x), f64::from(y)) + 0.5 - edge) * sign;
         }
     }

@@ -1,8 +1,8 @@
 //! What a camera saw.
 
 use glam::{DVec2, DVec3};
-use image::{GrayImage, Luma};
 use phalanx_camera::Camera;
+use phalanx_segmentation::Mask;
 
 use crate::error::{Error, Result};
 use crate::observation::boundary::{self, boundary_edges, outwards};
@@ -16,9 +16,9 @@ use crate::observation::distance_transform::nearest_edges;
 #[derive(Debug, Clone)]
 pub struct SilhouetteObservation {
     camera: Camera,
-    mask: GrayImage,
+    mask: Mask,
     /// 255 where it is known whether there is hand, 0 elsewhere.
-    known: GrayImage,
+    known: Mask,
     /// How far off its place the boundary is, over what it is where pixels were seen at once.
     grain: f64,
     /// How much a place of the boundary counts.
@@ -38,7 +38,7 @@ impl SilhouetteObservation {
     ///
     /// # Errors
     /// A mask of another size, or one without a boundary between hand and background.
-    pub fn new(camera: &Camera, mask: &GrayImage) -> Result<Self> {
+    pub fn new(camera: &Camera, mask: &Mask) -> Result<Self> {
         Self::within(camera, mask, |_| true)
     }
 
@@ -48,20 +48,16 @@ impl SilhouetteObservation {
     ///
     /// # Errors
     /// As of [`new`](Self::new); also a mask whose boundary lies nowhere that is known.
-    pub fn within(
-        camera: &Camera,
-        mask: &GrayImage,
-        known: impl Fn(DVec2) -> bool,
-    ) -> Result<Self> {
+    pub fn within(camera: &Camera, mask: &Mask, known: impl Fn(DVec2) -> bool) -> Result<Self> {
         camera.validate()?;
         let name = || camera.name.clone();
         let expected = (camera.intrinsics.width, camera.intrinsics.height);
         if mask.dimensions() != expected {
             return Err(Error::MaskSize { camera: name(), found: mask.dimensions(), expected });
         }
-        let known = GrayImage::from_fn(mask.width(), mask.height(), |x, y| {
+        let known = Mask::from_fn(mask.width(), mask.height(), |x, y| {
             let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
-            Luma([if known(middle) { 255 } else { 0 }])
+            known(middle)
         });
         let mut edges = Vec::new();
         boundary_edges(mask, &mut edges);
@@ -113,12 +109,12 @@ impl SilhouetteObservation {
     }
 
     /// The silhouette.
-    pub fn mask(&self) -> &GrayImage {
+    pub fn mask(&self) -> &Mask {
         &self.mask
     }
 
     /// 255 where it is known whether there is hand, 0 elsewhere.
-    pub(crate) fn known(&self) -> &GrayImage {
+    pub(crate) fn known(&self) -> &Mask {
         &self.known
     }
 
@@ -158,11 +154,11 @@ impl SilhouetteObservation {
     }
 
     /// Intersection over union with another mask of this size, of what is known.
-    pub(crate) fn iou(&self, other: &GrayImage) -> f64 {
+    pub(crate) fn iou(&self, other: &Mask) -> f64 {
         let (mut both, mut either) = (0_u32, 0_u32);
         let pixels = self.mask.iter().zip(other.iter()).zip(self.known.iter());
-        for ((&a, &b), _) in pixels.filter(|(_, known)| **known > 127) {
-            let (a, b) = (a > 127, b > 127);
+        for ((&a, &b), _) in pixels.filter(|(_, known)| Mask::is_hand_level(**known)) {
+            let (a, b) = (Mask::is_hand_level(a), Mask::is_hand_level(b));
             both += u32::from(a && b);
             either += u32::from(a || b);
         }

@@ -2,23 +2,24 @@
 
 use glam::DVec2;
 use image::GrayImage;
+use phalanx_segmentation::Mask;
 use proptest::prelude::*;
 
 use crate::observation::boundary::boundary_edges;
 use crate::observation::distance_transform::nearest_edges;
 
 /// Masks of few and of many changes.
-fn masks() -> impl Strategy<Value = GrayImage> {
+fn masks() -> impl Strategy<Value = Mask> {
     (1_u32..50, 1_u32..20, 0.0..1.0_f64).prop_flat_map(|(width, height, share)| {
         let pixel = prop::bool::weighted(share).prop_map(|hand| if hand { 200 } else { 100 });
         prop::collection::vec(pixel, (width * height) as usize)
-            .prop_map(move |pixels| GrayImage::from_raw(width, height, pixels).unwrap())
+            .prop_map(move |pixels| GrayImage::from_raw(width, height, pixels).unwrap().into())
     })
 }
 
 /// By looking at every pair of pixels.
-fn slow_edges(mask: &GrayImage) -> Vec<DVec2> {
-    let is_hand = |x: u32, y: u32| mask.get_pixel(x, y).0[0] > 127;
+fn slow_edges(mask: &Mask) -> Vec<DVec2> {
+    let is_hand = |x: u32, y: u32| mask.is_hand(x, y);
     let mut edges = Vec::new();
     for y in 0..mask.height() {
         let across = (1..mask.width()).filter(|&x| is_hand(x - 1, y) != is_hand(x, y));

@@ -112,7 +112,7 @@ mod tests {
     ) -> SilhouetteObservation {
         let primitives = hand.pose(pose, rest).primitives;
         let mask = Renderer::new(camera).unwrap().silhouette(&primitives).unwrap();
-        SilhouetteObservation::new(camera, &mask).unwrap()
+        SilhouetteObservation::new(camera, &mask.into()).unwrap()
     }
 
     /// The energy of the boundary when the same rays are held against the same primitives.

@@ -1,6 +1,6 @@
 //! Where in a mask a hand may be, and where its wrist is.
 
-use image::GrayImage;
+use crate::mask::Mask;
 
 use crate::detect::cross_sections::CrossSections;
 use crate::detect::geodesic::Geodesic;
@@ -60,7 +60,7 @@ struct Candidate {
 #[derive(Debug, Clone, Default)]
 pub struct HandDetector {
     majority: Majority,
-    cleaned: GrayImage,
+    cleaned: Mask,
     components: Components,
     grid: Grid,
     geodesic: Geodesic,
@@ -78,24 +78,23 @@ impl HandDetector {
     /// Unusable `cleanup`, an image without pixels, or nothing as large as a hand.
     ///
     /// ```
-    /// use image::{GrayImage, Luma};
-    /// use phalanx_segmentation::{Cleanup, HandDetector, WristModel};
+    /// use phalanx_segmentation::{Cleanup, HandDetector, Mask, WristModel};
     ///
     /// // A palm on an arm that comes from below.
-    /// let mask = GrayImage::from_fn(160, 120, |x, y| {
+    /// let mask = Mask::from_fn(160, 120, |x, y| {
     ///     let (dx, dy) = (x as f64 - 79.5, y as f64 - 40.0);
     ///     let palm = (dx / 22.0).powi(2) + (dy / 30.0).powi(2) < 1.0;
-    ///     Luma([if palm || (dx.abs() < 12.0 && dy > 0.0) { 255 } else { 0 }])
+    ///     palm || (dx.abs() < 12.0 && dy > 0.0)
     /// });
     /// let mut detector = HandDetector::default();
     /// let hands = detector.find(&mask, &Cleanup::default(), WristModel::builtin())?;
     /// assert!(hands[0].direction[1] < -0.9, "it points up");
-    /// assert_eq!(detector.isolate(&hands[0])[(79, 40)].0, [255]);
+    /// assert!(detector.isolate(&hands[0]).is_hand(79, 40));
     /// # Ok::<(), phalanx_segmentation::Error>(())
     /// ```
     pub fn find(
         &mut self,
-        mask: &GrayImage,
+        mask: &Mask,
         cleanup: &Cleanup,
         model: &WristModel,
     ) -> Result<Vec<HandDetection>> {
@@ -116,7 +115,7 @@ impl HandDetector {
     }
 
     /// The mask of the last search with nothing but a hand's component, and its arm.
-    pub fn isolate(&self, hand: &HandDetection) -> GrayImage {
+    pub fn isolate(&self, hand: &HandDetection) -> Mask {
         let mut mask = self.cleaned.clone();
         let width = mask.width() as usize;
         let others = |component: usize, _| component != hand.component;
@@ -128,7 +127,7 @@ impl HandDetector {
     /// passes nearest to a wrist.
     pub(crate) fn sections_at(
         &mut self,
-        mask: &GrayImage,
+        mask: &Mask,
         wrist: [f64; 2],
     ) -> Result<Option<(&CrossSections, usize)>> {
         self.components_of(mask, &Cleanup::default())?;
@@ -144,14 +143,14 @@ impl HandDetector {
     }
 
     /// Cleans the mask and gives the components that are large enough.
-    fn components_of(&mut self, mask: &GrayImage, cleanup: &Cleanup) -> Result<Vec<usize>> {
+    fn components_of(&mut self, mask: &Mask, cleanup: &Cleanup) -> Result<Vec<usize>> {
         cleanup.check()?;
         let (width, height) = mask.dimensions();
         if width == 0 || height == 0 {
             return Err(Error::ImageTooSmall { width, height, minimum: 1 });
         }
         if self.cleaned.dimensions() != mask.dimensions() {
-            self.cleaned = GrayImage::new(width, height);
+            self.cleaned = Mask::new(width, height);
         }
         let (columns, radius) = (width as usize, cleanup.majority_radius as usize);
         self.majority.vote(mask, columns, radius, &mut self.cleaned);

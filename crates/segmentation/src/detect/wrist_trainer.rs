@@ -1,6 +1,6 @@
 //! Learns what hands look like at their wrists.
 
-use image::GrayImage;
+use crate::mask::Mask;
 
 use crate::detect::cross_sections::FEATURES;
 use crate::detect::detector::HandDetector;
@@ -28,7 +28,7 @@ impl WristTrainer {
     ///
     /// # Errors
     /// No hand in the mask.
-    pub fn add(&mut self, mask: &GrayImage, wrist: [f64; 2]) -> Result<bool> {
+    pub fn add(&mut self, mask: &Mask, wrist: [f64; 2]) -> Result<bool> {
         let Some((sections, at)) = self.detector.sections_at(mask, wrist)? else {
             return Ok(false);
         };

@@ -1,5 +1,7 @@
 //! Connected components of a mask, by runs and union-find.
 
+use crate::mask::Mask;
+
 /// Which pixels are labelled. The hand is 8-connected, so the background is 4-connected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Class {
@@ -9,7 +11,7 @@ pub(crate) enum Class {
 
 impl Class {
     fn holds(self, level: u8) -> bool {
-        (level > 127) == (self == Class::Hand)
+        Mask::is_hand_level(level) == (self == Class::Hand)
     }
 }
 

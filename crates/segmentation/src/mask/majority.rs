@@ -1,5 +1,7 @@
 //! The majority vote of a square window: a median filter for masks.
 
+use crate::mask::Mask;
+
 /// Counts and sums of one row of windows, used again.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Majority {
@@ -57,7 +59,7 @@ impl Majority {
 fn settle(pixels: &[u8], votes: &[u8], voters: u16, out: &mut [u8]) {
     for ((out, &level), &votes) in out.iter_mut().zip(pixels).zip(votes) {
         // Twice the votes, plus one if the pixel itself breaks a draw.
-        let votes = 2 * u16::from(votes) + u16::from(level > 127);
+        let votes = 2 * u16::from(votes) + u16::from(Mask::is_hand_level(level));
         *out = if votes > voters { 255 } else { 0 };
     }
 }

@@ -1,6 +1,8 @@
 //! Exact area averages.
 
-use image::{GrayImage, RgbImage};
+use image::RgbImage;
+
+use crate::mask::Mask;
 
 use crate::error::{Error, Result};
 
@@ -70,16 +72,16 @@ pub fn downsample(image: &RgbImage, width: u32, height: u32) -> Result<RgbImage>
     Ok(target)
 }
 
-/// [`downsample`] for masks: 255 where at least half of a target pixel is hand (over 127), else 0.
-pub fn downsample_mask(mask: &GrayImage, width: u32, height: u32) -> Result<GrayImage> {
+/// [`downsample`] for masks: 255 where at least half of a target pixel is hand, else 0.
+pub fn downsample_mask(mask: &Mask, width: u32, height: u32) -> Result<Mask> {
     let window = CropWindow::centred(mask.dimensions(), (width, height))?;
-    let binary = |&level: &u8| if level > 127 { 255 } else { 0 };
+    let binary = |&level: &u8| if Mask::is_hand_level(level) { 255 } else { 0 };
     let mut target = mask.clone();
     target.iter_mut().for_each(|level| *level = binary(level));
     // A mask that is drawn or was brought to this size before stays as it is.
     if mask.dimensions() != (width, height) {
-        let source = target.into_raw();
-        target = GrayImage::new(width, height);
+        let source = target.into_image().into_raw();
+        target = Mask::new(width, height);
         area_average::<1>(&source, mask.width(), window, (width, height), &mut target);
         target.iter_mut().for_each(|level| *level = binary(level));
     }

@@ -1,14 +1,15 @@
 //! Skin in one picture: a skin model adapted to the person and the light.
 
-use image::{GrayImage, RgbImage};
+use image::RgbImage;
 
-use super::chroma::chroma;
-use super::histogram::smooth;
-use super::skin::SkinModel;
+use crate::mask::Mask;
 use crate::mask::cleanup::Cleanup;
 use crate::mask::components::{Class, Components};
 use crate::mask::majority::Majority;
 use crate::mask::morphology::{dilate, erode};
+use crate::masking::chroma::chroma;
+use crate::masking::histogram::smooth;
+use crate::masking::skin::SkinModel;
 
 /// Cells of luma, Cb and Cr that a picture's colours are counted in. A picture has too few pixels for
 /// cells of single levels; light changes luma more than it changes chroma.
@@ -48,7 +49,7 @@ const MIXED: usize = 2;
 /// });
 /// let model = SkinModel::builtin();
 /// let mask = AdaptedSkin::new(&model, &picture).segment(&picture);
-/// assert_eq!((mask[(40, 30)].0, mask[(5, 30)].0), ([255], [0]));
+/// assert!(mask.is_hand(40, 30) && !mask.is_hand(5, 30));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct AdaptedSkin {
@@ -62,7 +63,7 @@ impl AdaptedSkin {
         let (colours, _) = picture.as_raw().as_chunks::<3>();
         let cells: Vec<usize> = colours.iter().map(|&rgb| cell_of(rgb)).collect();
         let general = General::of(model);
-        let mut levels = model.segment(picture).into_raw();
+        let mut levels = model.segment(picture).into_image().into_raw();
         let mut adapted = Self { table: Vec::new() };
         for _ in 0..ROUNDS {
             let sure = SurePixels::of(levels, picture.width() as usize);
@@ -73,8 +74,8 @@ impl AdaptedSkin {
     }
 
     /// The mask of skin: 255 where it is, 0 elsewhere, as large as the picture.
-    pub fn segment(&self, picture: &RgbImage) -> GrayImage {
-        let mut mask = GrayImage::new(picture.width(), picture.height());
+    pub fn segment(&self, picture: &RgbImage) -> Mask {
+        let mut mask = Mask::new(picture.width(), picture.height());
         let (colours, _) = picture.as_raw().as_chunks::<3>();
         mask.iter_mut().zip(colours).for_each(|(level, &rgb)| *level = self.table[cell_of(rgb)]);
         mask
@@ -139,8 +140,8 @@ impl General {
 
     /// Bayes' rule in every cell, from this and the colours of sure pixels.
     fn decide(&self, sure: &SurePixels, cells: &[usize], prior: f64) -> Vec<u8> {
-        let is_skin = sure.skin.iter().map(|&level| level > 127);
-        let is_other = sure.near_skin.iter().map(|&level| level <= 127);
+        let is_skin = sure.skin.iter().map(|&level| Mask::is_hand_level(level));
+        let is_other = sure.near_skin.iter().map(|&level| !Mask::is_hand_level(level));
         let [skin, other] = &self.0;
         let skin = adapted(skin, cells, is_skin);
         let other = adapted(other, cells, is_other);

@@ -1,6 +1,8 @@
 //! A hand before a recorded background.
 
-use image::{GrayImage, RgbImage};
+use image::RgbImage;
+
+use crate::mask::Mask;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
@@ -126,10 +128,10 @@ impl BackgroundModel {
 
     /// The mask of the hand, 255 in it and 0 elsewhere, as large as the image, which is as large as
     /// the recorded background.
-    pub fn segment(&self, image: &RgbImage) -> Result<GrayImage> {
+    pub fn segment(&self, image: &RgbImage) -> Result<Mask> {
         let BackgroundParts { params, width, height, mean, noise } = &self.parts;
         same_size("image", (*width, *height), image)?;
-        let mut mask = GrayImage::new(*width, *height);
+        let mut mask = Mask::new(*width, *height);
         let (colours, _) = image.as_raw().as_chunks::<3>();
         let background = mean.iter().zip(noise);
         for ((level, &rgb), (&mean, &noise)) in mask.iter_mut().zip(colours).zip(background) {

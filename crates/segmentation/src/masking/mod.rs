@@ -7,5 +7,6 @@ pub(crate) mod histogram;
 pub(crate) mod label;
 pub(crate) mod otsu;
 pub(crate) mod plain_background;
+pub(crate) mod segment;
 pub(crate) mod skin;
 pub(crate) mod skin_file;

@@ -1,6 +1,8 @@
 //! A hand before a plain wall.
 
-use image::{GrayImage, RgbImage};
+use image::RgbImage;
+
+use crate::mask::Mask;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
@@ -35,16 +37,16 @@ impl PlainBackground {
     ///     Rgb(if (15..25).contains(&x) && y >= 10 { [200, 140, 110] } else { [230, 230, 228] })
     /// });
     /// let mask = PlainBackground::Bright.segment(&picture)?;
-    /// assert_eq!((mask[(20, 20)].0, mask[(2, 2)].0), ([255], [0]));
+    /// assert!(mask.is_hand(20, 20) && !mask.is_hand(2, 2));
     /// # Ok::<(), phalanx_segmentation::Error>(())
     /// ```
-    pub fn segment(self, image: &RgbImage) -> Result<GrayImage> {
+    pub fn segment(self, image: &RgbImage) -> Result<Mask> {
         let (width, height) = image.dimensions();
         if width == 0 || height == 0 {
             return Err(Error::ImageTooSmall { width, height, minimum: 1 });
         }
         let wall = border_median(image);
-        let mut mask = GrayImage::new(width, height);
+        let mut mask = Mask::new(width, height);
         let mut histogram = [0_u32; 256];
         let (colours, _) = image.as_raw().as_chunks::<3>();
         for (level, &rgb) in mask.iter_mut().zip(colours) {

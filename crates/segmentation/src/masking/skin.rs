@@ -1,6 +1,8 @@
 //! Which colours are skin: a histogram classifier over Cb and Cr.
 
-use image::{GrayImage, RgbImage};
+use image::RgbImage;
+
+use crate::mask::Mask;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
@@ -121,14 +123,14 @@ impl SkinTrainer {
         *count = count.saturating_add(1);
     }
 
-    /// Counts every pixel of an image; those over 127 in the mask are skin.
-    pub fn add_image(&mut self, image: &RgbImage, mask: &GrayImage) -> Result<()> {
+    /// Counts every pixel of an image; those of the mask are skin.
+    pub fn add_image(&mut self, image: &RgbImage, mask: &Mask) -> Result<()> {
         if image.dimensions() != mask.dimensions() {
             let (expected, found) = (image.dimensions(), mask.dimensions());
             return Err(Error::SizeMismatch { what: "skin mask", expected, found });
         }
         for (rgb, level) in image.pixels().zip(mask.pixels()) {
-            let label = if level.0[0] > 127 { Label::Skin } else { Label::NonSkin };
+            let label = if Mask::is_hand_level(level.0[0]) { Label::Skin } else { Label::NonSkin };
             self.add_pixel(rgb.0, label);
         }
         Ok(())
@@ -224,16 +226,16 @@ impl SkinModel {
     }
 
     /// The mask of skin: 255 where it is, 0 elsewhere, as large as the image.
-    pub fn segment(&self, image: &RgbImage) -> GrayImage {
-        let mut mask = GrayImage::new(image.width(), image.height());
+    pub fn segment(&self, image: &RgbImage) -> Mask {
+        let mut mask = Mask::new(image.width(), image.height());
         self.fill(image, &mut mask);
         mask
     }
 
     /// [`SkinModel::segment`] into a mask that is used again; it takes the image's size.
-    pub fn segment_into(&self, image: &RgbImage, mask: &mut GrayImage) {
+    pub fn segment_into(&self, image: &RgbImage, mask: &mut Mask) {
         if mask.dimensions() != image.dimensions() {
-            *mask = GrayImage::new(image.width(), image.height());
+            *mask = Mask::new(image.width(), image.height());
         }
         self.fill(image, mask);
     }
@@ -245,7 +247,7 @@ impl SkinModel {
         [skin[bin], other[bin]]
     }
 
-    fn fill(&self, image: &RgbImage, mask: &mut GrayImage) {
+    fn fill(&self, image: &RgbImage, mask: &mut Mask) {
         let (colours, _) = image.as_raw().as_chunks::<3>();
         let params = self.parts.params;
         for (level, &rgb) in mask.iter_mut().zip(colours) {

@@ -1,6 +1,6 @@
 //! The ordered outer contour of a mask.
 
-use image::GrayImage;
+use crate::mask::Mask;
 
 /// The outer boundary of a silhouette, in order.
 ///
@@ -41,25 +41,24 @@ impl Contour {
     /// where there is no hand, or no background outside it.
     ///
     /// ```
-    /// use image::{GrayImage, Luma};
-    /// use phalanx_segmentation::Contour;
+    /// use phalanx_segmentation::{Contour, Mask};
     ///
-    /// let mask = GrayImage::from_fn(40, 30, |x, y| {
-    ///     Luma([if (15..25).contains(&x) && y >= 10 { 255 } else { 0 }])
+    /// let mask = Mask::from_fn(40, 30, |x, y| {
+    ///     (15..25).contains(&x) && y >= 10
     /// });
     /// let contour = Contour::trace(&mask); // up one side, along the top, and down the other
     /// assert!(!contour.is_closed());
     /// assert_eq!(contour.pieces().len(), 1);
     /// assert_eq!(contour.points.len(), 20 + 8 + 20);
     /// ```
-    pub fn trace(mask: &GrayImage) -> Self {
+    pub fn trace(mask: &Mask) -> Self {
         let mut contour = Self::default();
         contour.trace_again(mask);
         contour
     }
 
     /// [`Contour::trace`] in this contour's memory.
-    pub(crate) fn trace_again(&mut self, mask: &GrayImage) {
+    pub(crate) fn trace_again(&mut self, mask: &Mask) {
         self.points.clear();
         self.ends.clear();
         self.closed = false;
@@ -111,12 +110,12 @@ struct Crack {
 
 const STEPS: [[i64; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
 
-fn is_inside(mask: &GrayImage, [x, y]: [i64; 2]) -> bool {
+fn is_inside(mask: &Mask, [x, y]: [i64; 2]) -> bool {
     (0..i64::from(mask.width())).contains(&x) && (0..i64::from(mask.height())).contains(&y)
 }
 
-fn is_hand(mask: &GrayImage, pixel: [i64; 2]) -> bool {
-    is_inside(mask, pixel) && mask.get_pixel(pixel[0] as u32, pixel[1] as u32).0[0] > 127
+fn is_hand(mask: &Mask, pixel: [i64; 2]) -> bool {
+    is_inside(mask, pixel) && mask.is_hand(pixel[0] as u32, pixel[1] as u32)
 }
 
 fn step([x, y]: [i64; 2], heading: usize) -> [i64; 2] {
@@ -126,14 +125,14 @@ fn step([x, y]: [i64; 2], heading: usize) -> [i64; 2] {
 
 impl Crack {
     /// Above the first hand pixel in reading order, so certainly on an outer boundary.
-    fn first(mask: &GrayImage) -> Option<Self> {
-        let index = mask.iter().position(|&level| level > 127)? as i64;
+    fn first(mask: &Mask) -> Option<Self> {
+        let index = mask.iter().position(|&level| Mask::is_hand_level(level))? as i64;
         let width = i64::from(mask.width());
         Some(Self { pixel: [index % width, index / width], heading: 0 })
     }
 
     /// The next crack of the same boundary. Pixels that meet at a corner are connected.
-    fn next(self, mask: &GrayImage) -> Self {
+    fn next(self, mask: &Mask) -> Self {
         let Self { pixel, heading } = self;
         let ahead = step(pixel, heading);
         let outer = step(ahead, heading + 3);
@@ -147,13 +146,13 @@ impl Crack {
     }
 
     /// Whether the image ends here.
-    fn is_cut(self, mask: &GrayImage) -> bool {
+    fn is_cut(self, mask: &Mask) -> bool {
         !is_inside(mask, step(self.pixel, self.heading + 3))
     }
 
     /// From here on the first crack that follows a cut; without any cut, here; without anything
     /// but cuts, nothing.
-    fn start_of_piece(self, mask: &GrayImage) -> Option<Self> {
+    fn start_of_piece(self, mask: &Mask) -> Option<Self> {
         let mut crack = self;
         loop {
             let next = crack.next(mask);

@@ -1,6 +1,6 @@
 //! A cleaned mask with its contour and the end of its forearm.
 
-use image::GrayImage;
+use crate::mask::Mask;
 
 use crate::error::{Error, Result};
 use crate::mask::cleanup::{Workspace, keep_largest};
@@ -14,7 +14,7 @@ pub const MIN_SIDE: u32 = 16;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Silhouette {
     /// 255 in the hand, 0 elsewhere; one component.
-    pub mask: GrayImage,
+    pub mask: Mask,
     /// Its outer contour.
     pub contour: Contour,
     /// Where its forearm ends.
@@ -26,27 +26,25 @@ impl Default for Silhouette {
     fn default() -> Self {
         let (end, sides) = ([0.0; 2], [[0.0; 2]; 2]);
         let forearm = Forearm { end, sides, cue: ForearmCue::SmoothEnd, crossings: 0 };
-        Self { mask: GrayImage::default(), contour: Contour::default(), forearm }
+        Self { mask: Mask::default(), contour: Contour::default(), forearm }
     }
 }
 
 impl Silhouette {
-    /// The silhouette of a clean mask, at least [`MIN_SIDE`] pixels wide and high, in which hand is
-    /// over 127. Of several components the largest is taken, as in [`clean`](crate::clean).
+    /// The silhouette of a clean mask, at least [`MIN_SIDE`] pixels wide and high. Of several components the largest is taken, as in [`clean`](crate::clean).
     ///
     /// ```
-    /// use image::{GrayImage, Luma};
-    /// use phalanx_segmentation::{ForearmCue, Silhouette};
+    /// use phalanx_segmentation::{ForearmCue, Mask, Silhouette};
     ///
-    /// let mask = GrayImage::from_fn(40, 30, |x, y| {
-    ///     Luma([if (15..25).contains(&x) && y >= 10 { 255 } else { 0 }])
+    /// let mask = Mask::from_fn(40, 30, |x, y| {
+    ///     (15..25).contains(&x) && y >= 10
     /// });
     /// let silhouette = Silhouette::from_mask(&mask)?;
     /// assert_eq!(silhouette.forearm.end, [20.0, 29.5]);
     /// assert_eq!(silhouette.forearm.cue, ForearmCue::Border);
     /// # Ok::<(), phalanx_segmentation::Error>(())
     /// ```
-    pub fn from_mask(mask: &GrayImage) -> Result<Self> {
+    pub fn from_mask(mask: &Mask) -> Result<Self> {
         let mut silhouette = Self::default();
         silhouette.extract_into(mask, &mut Workspace::default())?;
         Ok(silhouette)
@@ -54,16 +52,16 @@ impl Silhouette {
 
     /// [`Silhouette::from_mask`] in this silhouette's memory. After an error its content means
     /// nothing.
-    pub fn extract_into(&mut self, mask: &GrayImage, workspace: &mut Workspace) -> Result<()> {
+    pub fn extract_into(&mut self, mask: &Mask, workspace: &mut Workspace) -> Result<()> {
         let (width, height) = mask.dimensions();
         if width.min(height) < MIN_SIDE {
             return Err(Error::ImageTooSmall { width, height, minimum: MIN_SIDE });
         }
         if self.mask.dimensions() != mask.dimensions() {
-            self.mask = GrayImage::new(width, height);
+            self.mask = Mask::new(width, height);
         }
         for (own, &level) in self.mask.iter_mut().zip(mask.iter()) {
-            *own = if level > 127 { 255 } else { 0 };
+            *own = if Mask::is_hand_level(level) { 255 } else { 0 };
         }
         let pixels = keep_largest(&mut workspace.components, &mut self.mask, width as usize, 1)?;
         self.contour.trace_again(&self.mask);

@@ -1,6 +1,6 @@
 //! Where the forearm ends.
 
-use image::GrayImage;
+use crate::mask::Mask;
 
 use crate::error::Result;
 use crate::silhouette::contour::Contour;
@@ -36,7 +36,7 @@ impl Forearm {
     /// It is the middle of the longest run of hand pixels along the image perimeter; a run around
     /// a corner is one run. Without any, it is the end along the principal axis that is a smooth
     /// stump rather than fingers.
-    pub fn find(mask: &GrayImage, contour: &Contour) -> Result<Self> {
+    pub fn find(mask: &Mask, contour: &Contour) -> Result<Self> {
         if let Some(forearm) = border_crossing(mask) {
             return Ok(forearm);
         }
@@ -46,7 +46,7 @@ impl Forearm {
 }
 
 /// Pixels of the perimeter, clockwise from the top left, each once.
-fn perimeter(mask: &GrayImage) -> impl Iterator<Item = [u32; 2]> + Clone {
+fn perimeter(mask: &Mask) -> impl Iterator<Item = [u32; 2]> + Clone {
     let (right, bottom) = (mask.width() - 1, mask.height() - 1);
     let top = (0..right).map(|x| [x, 0]);
     let right_side = (0..bottom).map(move |y| [right, y]);
@@ -55,8 +55,8 @@ fn perimeter(mask: &GrayImage) -> impl Iterator<Item = [u32; 2]> + Clone {
     top.chain(right_side).chain(under).chain(left)
 }
 
-fn border_crossing(mask: &GrayImage) -> Option<Forearm> {
-    let is_hand = |[x, y]: [u32; 2]| mask.get_pixel(x, y).0[0] > 127;
+fn border_crossing(mask: &Mask) -> Option<Forearm> {
+    let is_hand = |[x, y]: [u32; 2]| mask.is_hand(x, y);
     let length = perimeter(mask).count();
     // Starting after a background pixel, no run is split.
     let start = perimeter(mask).position(|pixel| !is_hand(pixel))?;

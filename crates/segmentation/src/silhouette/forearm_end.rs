@@ -1,6 +1,6 @@
 //! The forearm's end where it does not leave the image: the smooth end of the silhouette.
 
-use image::GrayImage;
+use crate::mask::Mask;
 
 use crate::error::{Error, Result};
 use crate::silhouette::contour::Contour;
@@ -52,7 +52,7 @@ pub(crate) struct SmoothEnd {
 
 /// The end that is a smooth stump rather than fingers. Of two smooth ends, such as
 /// those of a fist, the forearm is the narrower one.
-pub(crate) fn find_smooth_end(mask: &GrayImage, contour: &Contour) -> Result<SmoothEnd> {
+pub(crate) fn find_smooth_end(mask: &Mask, contour: &Contour) -> Result<SmoothEnd> {
     let axis = PrincipalAxis::of(mask);
     let ends = axis.ends(mask, contour);
     let raggedness = ends.map(|end| end.raggedness());
@@ -78,21 +78,20 @@ struct PrincipalAxis {
     elongation: f64,
 }
 
-fn hand_pixels(mask: &GrayImage) -> impl Iterator<Item = [f64; 2]> {
-    let hand = mask.enumerate_pixels().filter(|(.., level)| level.0[0] > 127);
-    hand.map(|(x, y, _)| [f64::from(x) + 0.5, f64::from(y) + 0.5])
+fn hand_middles(mask: &Mask) -> impl Iterator<Item = [f64; 2]> {
+    mask.hand_pixels().map(|pixel| pixel.map(|at| f64::from(at) + 0.5))
 }
 
 impl PrincipalAxis {
-    fn of(mask: &GrayImage) -> Self {
+    fn of(mask: &Mask) -> Self {
         let (mut count, mut sum) = (0.0, [0.0; 2]);
-        for [x, y] in hand_pixels(mask) {
+        for [x, y] in hand_middles(mask) {
             count += 1.0;
             sum = [sum[0] + x, sum[1] + y];
         }
         let middle = sum.map(|sum| sum / count);
         let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-        for [x, y] in hand_pixels(mask) {
+        for [x, y] in hand_middles(mask) {
             let (dx, dy) = (x - middle[0], y - middle[1]);
             (xx, xy, yy) = (xx + dx * dx, xy + dx * dy, yy + dy * dy);
         }
@@ -110,9 +109,9 @@ impl PrincipalAxis {
     }
 
     /// Both ends, that against the direction first. Each has at least one pixel.
-    fn ends(&self, mask: &GrayImage, contour: &Contour) -> [End; 2] {
+    fn ends(&self, mask: &Mask, contour: &Contour) -> [End; 2] {
         let (mut low, mut high) = (f64::MAX, f64::MIN);
-        for pixel in hand_pixels(mask) {
+        for pixel in hand_middles(mask) {
             let along = self.along(pixel);
             (low, high) = (low.min(along), high.max(along));
         }
@@ -122,7 +121,7 @@ impl PrincipalAxis {
             [along - low, high - along]
         };
         let mut ends = [End { depth: END * length, ..End::default() }; 2];
-        for pixel in hand_pixels(mask) {
+        for pixel in hand_middles(mask) {
             for (end, depth) in ends.iter_mut().zip(depths(pixel)) {
                 end.area += usize::from(depth <= END * length);
                 if depth <= TIP * length {

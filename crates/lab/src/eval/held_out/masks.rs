@@ -3,11 +3,10 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
-use image::GrayImage;
 use phalanx::{Describer, Picture, PoseContexts, Scene};
 use phalanx_hand::Pose;
 use phalanx_multiview::Scratch;
-use phalanx_segmentation::Silhouette;
+use phalanx_segmentation::{Mask, Silhouette};
 
 use super::Ground;
 use super::errors::Truth;
@@ -90,7 +89,7 @@ fn describe(
     let view = |camera: &phalanx_camera::Camera| -> Result<(Silhouette, Vec<f32>)> {
         let path = folder.join(&camera.name).join(format!("{frame}.png"));
         let name = || path.display().to_string();
-        let mask: GrayImage = image::open(&path).with_context(name)?.to_luma8();
+        let mask = Mask::from(image::open(&path).with_context(name)?.to_luma8());
         let (width, height) = (camera.intrinsics.width, camera.intrinsics.height);
         ensure!(
             u64::from(mask.width())

@@ -2,14 +2,13 @@
 
 use anyhow::{Context, Result};
 use faer::Mat;
-use image::GrayImage;
 use phalanx::{
     Estimator, Framing, Picture, Preset, Progress, Refiner, SceneDescriber, SceneSource, Training,
     Workspace, targets,
 };
 use phalanx_hand::{Dof, Pose};
 use phalanx_refine::{NuisanceParameters, PoseFitSettings};
-use phalanx_segmentation::Silhouette;
+use phalanx_segmentation::{Mask, Silhouette};
 use rayon::prelude::*;
 
 use super::Ground;
@@ -25,7 +24,7 @@ use crate::recipes::{Trained, trained};
 enum Frame {
     Silhouettes(Vec<Silhouette>),
     /// As large as they are, to be looked at through windows.
-    Masks(Vec<GrayImage>),
+    Masks(Vec<Mask>),
 }
 
 /// Of so many samples of a test one is refined, which takes its time; shares no factor with the

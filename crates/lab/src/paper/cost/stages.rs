@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use anyhow::{Context, Result};
 use image::RgbImage;
-use phalanx::{Describer, OrientationRule, Picture, Segmenter};
+use phalanx::{Describer, OrientationRule, Picture};
 use phalanx_codebook::Encoder;
 use phalanx_hand::Dof;
 use phalanx_render::{Appearance, Renderer};
@@ -131,7 +131,7 @@ fn photographs(lab: &Lab<'_>) -> Result<Vec<RgbImage>> {
 
 /// Seconds from decoded photographs, of the first cameras, to their histograms.
 fn describe(photographs: &[RgbImage], halves: &Halves) -> Result<f64> {
-    let skin = Segmenter::Skin(SkinModel::builtin());
+    let skin = SkinModel::builtin();
     let (mut describer, mut silhouette) = (Describer::default(), Silhouette::default());
     let mut votes = phalanx_codebook::Scratch::default();
     seconds(|| {

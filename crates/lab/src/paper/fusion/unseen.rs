@@ -1,11 +1,11 @@
 //! Motion that nothing was learnt from, whole and with a piece of one view missing.
 
 use anyhow::Result;
-use image::{GrayImage, Luma};
+use image::Luma;
 use phalanx::{Describer, OrientationRule, PoseContexts, draw_silhouette};
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
-use phalanx_segmentation::Silhouette;
+use phalanx_segmentation::{Mask, Silhouette};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
@@ -87,17 +87,13 @@ fn damaged(
 }
 
 /// Takes a disc around a random pixel of the hand out of a mask.
-fn pierce(mask: &mut GrayImage, random: &mut Pcg64Mcg) {
-    let hand: Vec<(u32, u32)> = mask
-        .enumerate_pixels()
-        .filter(|(_, _, of)| of.0[0] > 127)
-        .map(|(x, y, _)| (x, y))
-        .collect();
+fn pierce(mask: &mut Mask, random: &mut Pcg64Mcg) {
+    let hand: Vec<[u32; 2]> = mask.hand_pixels().collect();
     if hand.is_empty() {
         return;
     }
-    let (x0, y0) = hand[(random.next_u64() % hand.len() as u64) as usize];
-    for (x, y) in hand {
+    let [x0, y0] = hand[(random.next_u64() % hand.len() as u64) as usize];
+    for [x, y] in hand {
         let (dx, dy) = (x as i32 - x0 as i32, y as i32 - y0 as i32);
         if dx * dx + dy * dy <= HOLE_PX * HOLE_PX {
             mask.put_pixel(x, y, Luma([0]));

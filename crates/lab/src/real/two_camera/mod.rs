@@ -10,12 +10,12 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::Args;
 use glam::DVec3;
-use image::{GrayImage, RgbImage};
+use image::RgbImage;
 use phalanx::{Progress, Window, WindowFinder, Workspace};
 use phalanx_camera::{Rig, Volume, triangulate};
 use phalanx_hand::{Dof, HandShape, Pose, write_poses};
 use phalanx_refine::PoseFit;
-use phalanx_segmentation::{Silhouette, SkinModel};
+use phalanx_segmentation::{Mask, Silhouette, SkinModel};
 
 use crate::data::sets;
 use crate::files;
@@ -54,7 +54,7 @@ pub struct Arguments {
 pub(crate) struct Look {
     pub(crate) name: String,
     pub(crate) images: Vec<RgbImage>,
-    pub(crate) masks: Vec<GrayImage>,
+    pub(crate) masks: Vec<Mask>,
     pub(crate) seen: Result<Seen>,
 }
 
@@ -211,7 +211,7 @@ fn look_at(rig: &Rig, take: &Take) -> Result<Vec<Look>> {
         let image = |camera: &TakeCamera| camera.picture(&frame, Input::Photographs);
         let images = take.cameras.iter().map(|camera| Ok(image(camera)?.to_rgb8()));
         let images: Vec<RgbImage> = images.collect::<Result<_>>()?;
-        let masks: Vec<GrayImage> = images.iter().map(|image| skin.segment(image)).collect();
+        let masks: Vec<Mask> = images.iter().map(|image| skin.segment(image)).collect();
         let seen = see(rig, &masks, &mut finder, last);
         let look = Look { name: frame.to_string(), images, masks, seen };
         last = look.seen.as_ref().ok().filter(|_| is_whole(&look)).map(|seen| seen.wrist);
@@ -220,12 +220,7 @@ fn look_at(rig: &Rig, take: &Take) -> Result<Vec<Look>> {
     Ok(looks)
 }
 
-fn see(
-    rig: &Rig,
-    masks: &[GrayImage],
-    finder: &mut WindowFinder,
-    last: Option<DVec3>,
-) -> Result<Seen> {
+fn see(rig: &Rig, masks: &[Mask], finder: &mut WindowFinder, last: Option<DVec3>) -> Result<Seen> {
     let windows = finder.find(&rig.cameras, masks, last)?;
     let mut silhouettes = vec![Silhouette::default(); windows.len()];
     finder.silhouettes(&windows, &mut silhouettes)?;

@@ -18,7 +18,6 @@ use phalanx_rvm::{Stop, TwoStageSelection};
 use rayon::prelude::*;
 
 use super::{Look, Seen, sheet};
-use crate::data::saturation::overlap;
 use crate::data::sets;
 use crate::eval::held_out::method::nystrom;
 use crate::figures::mosaic::mosaic;
@@ -159,7 +158,7 @@ impl Estimates {
                     sums.iter_mut().zip(&seen.windows).zip(&seen.silhouettes)
                 {
                     let drawn = Renderer::new(&window.camera)?.silhouette(&solids)?;
-                    *sum += overlap(&drawn, &seen.mask);
+                    *sum += seen.mask.iou(&drawn.into());
                 }
             }
             let shares = sums.iter().map(|sum| format!("{:.3}", sum / poses.len() as f64));

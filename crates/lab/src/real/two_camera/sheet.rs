@@ -8,7 +8,7 @@ use image::{Rgb, RgbImage, imageops};
 use phalanx::{WORKING_SIZE, Window};
 use phalanx_hand::{HandShape, Pose};
 use phalanx_render::Renderer;
-use phalanx_segmentation::Silhouette;
+use phalanx_segmentation::{Mask, Silhouette};
 
 use super::{Look, Seen};
 use crate::figures::mosaic::mosaic;
@@ -70,7 +70,7 @@ pub(super) fn fit(
     for (view, window) in seen.windows.iter().enumerate() {
         let drawn = Renderer::new(&window.camera)?.silhouette(&solids)?;
         let mut panel = through(&look.images[view], window, &seen.silhouettes[view]);
-        if let Ok(drawn) = Silhouette::from_mask(&drawn) {
+        if let Ok(drawn) = Silhouette::from_mask(&drawn.into()) {
             trace(&mut panel, &drawn, FRAME, 1);
         }
         views.push(panel);
@@ -109,8 +109,8 @@ fn beside(panels: &[RgbImage]) -> RgbImage {
 }
 
 /// Colours the mask's border.
-fn outline(picture: &mut RgbImage, mask: &image::GrayImage) {
-    let is_skin = |x: u32, y: u32| mask.get_pixel(x, y).0[0] > 127;
+fn outline(picture: &mut RgbImage, mask: &Mask) {
+    let is_skin = |x: u32, y: u32| mask.is_hand(x, y);
     for y in 1..mask.height() {
         for x in 1..mask.width() {
             if is_skin(x, y) != is_skin(x - 1, y) || is_skin(x, y) != is_skin(x, y - 1) {
