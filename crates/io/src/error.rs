@@ -172,3 +172,8 @@ fn shortened(text: &str) -> String {
         Some((end, _)) => format!("{}…", &text[..end]),
     }
 }
+
+/// What a writer reports, as an error of this crate.
+pub(crate) fn unwritten(error: &impl std::fmt::Display) -> Error {
+    Error::Write { what: error.to_string() }
+}

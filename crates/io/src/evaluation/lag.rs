@@ -3,7 +3,7 @@
 use glam::DVec3;
 use phalanx_hand::{Dof, JOINTS};
 
-use super::reference::{Clock, Reference};
+use crate::evaluation::reference::{Clock, Reference};
 use crate::export::frame_rate;
 use crate::take::Take;
 

@@ -5,9 +5,9 @@ use std::io::Read;
 use glam::DVec3;
 use phalanx_hand::{Dof, JOINTS};
 
+use crate::error::{Error, Result};
 use crate::export::{Coordinate, CoordinateNames};
 use crate::take::JOINT_NAMES;
-use crate::{Error, Result};
 
 /// Angles or joints over time; NaN where there is nothing.
 #[derive(Debug, Clone, PartialEq)]

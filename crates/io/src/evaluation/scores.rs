@@ -2,7 +2,7 @@
 
 use phalanx_hand::{Dof, JOINTS};
 
-use super::reference::{Clock, Reference};
+use crate::evaluation::reference::{Clock, Reference};
 use crate::export::frame_rate;
 use crate::take::{PoseEstimate, Take};
 

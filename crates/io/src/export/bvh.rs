@@ -2,8 +2,9 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
-use super::{Placement, filled_poses, frame_rate};
-use crate::Result;
+use crate::error::Result;
+use crate::export::placement::Placement;
+use crate::export::timing::{filled_poses, frame_rate};
 use crate::model::{BONE_NAMES, BONES, Skeleton, SkeletonBone};
 use crate::take::Take;
 

@@ -1,8 +1,9 @@
 //! C3D: the joints as points, for motion analysis (the C3D User Guide, <https://www.c3d.org>).
 
-use super::{Placement, frame_rate};
+use crate::error::{Error, Result};
+use crate::export::placement::Placement;
+use crate::export::timing::frame_rate;
 use crate::take::{JOINT_NAMES, Take};
-use crate::{Error, Result};
 
 /// The length of a block, bytes.
 const BLOCK: usize = 512;

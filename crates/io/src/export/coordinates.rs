@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use phalanx_hand::Dof;
 
-use crate::Error;
+use crate::error::Error;
 
 /// A model whose names a file of angles has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

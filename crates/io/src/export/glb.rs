@@ -3,10 +3,11 @@
 use glam::{DAffine3, DQuat, DVec3};
 use serde_json::{Value, json};
 
-use super::{Placement, filled_poses};
+use crate::error::{Error, Result};
+use crate::export::placement::{LengthUnit, Placement};
+use crate::export::timing::filled_poses;
 use crate::model::{BONE_NAMES, BONES, Skeleton, Skin};
 use crate::take::{Take, TakeFrame};
-use crate::{Error, Result};
 
 /// The file's mark, version and the kinds of its two chunks.
 const MARK: u32 = 0x4654_6C67;
@@ -30,7 +31,7 @@ const INDICES: u32 = 34963;
 /// that does not keep to [`Take::validate`].
 pub fn glb(take: &Take, placement: Placement) -> Result<Vec<u8>> {
     take.validate()?;
-    if placement.unit != super::LengthUnit::Metre {
+    if placement.unit != LengthUnit::Metre {
         return Err(Error::Unit { format: "glTF", units: "m" });
     }
     let found = |frame: &&TakeFrame| frame.estimate.is_some();

@@ -5,9 +5,10 @@
 
 use phalanx_hand::Unit;
 
-use super::coordinates::Coordinate;
-use super::{CoordinateNames, LengthUnit};
-use crate::Result;
+use crate::error::Result;
+use crate::export::coordinates::Coordinate;
+use crate::export::coordinates::CoordinateNames;
+use crate::export::placement::LengthUnit;
 use crate::take::{PoseEstimate, Take};
 
 /// The take's angles as a MOT file: degrees, lengths in `unit`, no row for a frame without a hand.

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::Error;
+use crate::error::Error;
 use crate::take::TakeHeader;
 
 /// The axes and the unit of a file's positions.

@@ -1,8 +1,9 @@
 //! TRC: the joints as markers, for OpenSim and Pose2Sim.
 
-use super::{Placement, frame_rate};
+use crate::error::{Error, Result};
+use crate::export::placement::{LengthUnit, Placement};
+use crate::export::timing::frame_rate;
 use crate::take::{JOINT_NAMES, Take};
-use crate::{Error, Result};
 
 /// The take's joints as a TRC file; `name` is the file's own, which its first line repeats. Joints
 /// of frames without a hand are NaN.
@@ -12,7 +13,7 @@ use crate::{Error, Result};
 /// [`Take::validate`].
 pub fn trc(take: &Take, name: &str, placement: Placement) -> Result<String> {
     take.validate()?;
-    if placement.unit == super::LengthUnit::Centimetre {
+    if placement.unit == LengthUnit::Centimetre {
         return Err(Error::Unit { format: "TRC", units: "mm or m" });
     }
     let (rate, frames, joints) = (frame_rate(take), take.frames.len(), JOINT_NAMES.len());

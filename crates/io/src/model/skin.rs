@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use glam::{DAffine3, DMat3, DVec3};
 use phalanx_hand::{Bone, ForearmShape, HandShape, Pose, Primitive, Sphere};
 
-use super::bones::bone_of;
+use crate::model::bones::bone_of;
 
 /// Corners around a bone.
 const AROUND: usize = 12;

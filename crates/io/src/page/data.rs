@@ -8,10 +8,10 @@ use glam::{DVec2, DVec3};
 use phalanx_hand::{Dof, JOINTS, Side, Unit};
 use serde_json::{Value, json};
 
+use crate::error::{Error, Result};
 use crate::model::{Skeleton, Skin};
 use crate::report::{FrameChoice, NamedRange, RangeOfMotion, Table, range_table, short};
 use crate::take::{Take, TakeFrame};
-use crate::{Error, Result};
 
 /// A page with more frames would be more than browsers bear.
 pub const MOST_FRAMES: usize = 20_000;

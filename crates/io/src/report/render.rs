@@ -2,11 +2,11 @@
 
 use serde_json::json;
 
-use super::Measured;
-use super::table::{COLUMNS, Row, Table};
-use crate::Result;
-use crate::page::{escape, fill};
-use crate::take::unwritten;
+use crate::error::Result;
+use crate::error::unwritten;
+use crate::page::html::{escape, fill};
+use crate::report::range_of_motion::Measured;
+use crate::report::table::{COLUMNS, Row, Table};
 
 /// The width of a cell as text.
 const CELL: usize = 15;

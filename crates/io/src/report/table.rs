@@ -2,7 +2,7 @@
 
 use phalanx_hand::{Digit, Dof};
 
-use super::{AngleRange, Measured, RangeOfMotion};
+use crate::report::range_of_motion::{AngleRange, Measured, RangeOfMotion};
 
 /// A take's range of motion with what the take is called.
 #[derive(Debug, Clone, Copy)]

@@ -7,7 +7,7 @@ use phalanx_hand::{Dof, JOINTS};
 use serde::de::{Deserialize, Deserializer, Error as _};
 use serde::ser::{Serialize, Serializer};
 
-use super::JOINT_NAMES;
+use crate::take::frames::JOINT_NAMES;
 
 /// The keys of an object.
 pub(super) trait Keys<const N: usize> {

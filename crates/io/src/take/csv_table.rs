@@ -9,9 +9,11 @@ use std::io::{Read, Write};
 use glam::DVec3;
 use phalanx_hand::{Dof, JOINTS, Pose};
 
-use super::validate::{FrameOrder, SEPARATOR};
-use super::{FrameView, JOINT_NAMES, PoseEstimate, Take, TakeFrame, TakeHeader, header, unwritten};
-use crate::{Error, Result};
+use crate::error::unwritten;
+use crate::error::{Error, Result};
+use crate::take::frames::{FrameView, JOINT_NAMES, PoseEstimate, Take, TakeFrame, TakeHeader};
+use crate::take::header;
+use crate::take::validate::{FrameOrder, SEPARATOR};
 
 /// The column of the header.
 const HEADER: &str = "take";

@@ -4,8 +4,8 @@ use glam::{DAffine3, DMat3, DVec3};
 use phalanx_hand::HandShape;
 use serde::{Deserialize, Serialize};
 
-use super::{FORMAT_VERSION, TakeHeader};
-use crate::{Error, Result};
+use crate::error::{Error, Result};
+use crate::take::frames::{FORMAT_VERSION, TakeHeader};
 
 /// The mark of a take.
 pub(super) const FORMAT: &str = "phalanx-take";

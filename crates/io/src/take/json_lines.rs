@@ -6,10 +6,12 @@ use glam::DVec3;
 use phalanx_hand::{Dof, JOINTS, Pose};
 use serde::{Deserialize, Serialize};
 
-use super::by_name::{ByDof, ByJoint};
-use super::validate::FrameOrder;
-use super::{FrameView, PoseEstimate, Take, TakeFrame, TakeHeader, header, unwritten};
-use crate::{Error, Result};
+use crate::error::unwritten;
+use crate::error::{Error, Result};
+use crate::take::by_name::{ByDof, ByJoint};
+use crate::take::frames::{FrameView, PoseEstimate, Take, TakeFrame, TakeHeader};
+use crate::take::header;
+use crate::take::validate::FrameOrder;
 
 /// The JSON form of [`TakeFrame`]: degrees, millimetres and seconds.
 #[derive(Serialize, Deserialize)]

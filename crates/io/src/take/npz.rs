@@ -5,11 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 use phalanx_hand::{Dof, JOINTS, Pose};
 
-use super::npy::{Array, Data};
-use super::{
-    FrameView, JOINT_NAMES, PoseEstimate, Take, TakeFrame, TakeHeader, header, stored_zip,
-};
-use crate::{Error, Result};
+use crate::error::{Error, Result};
+use crate::take::frames::{FrameView, JOINT_NAMES, PoseEstimate, Take, TakeFrame, TakeHeader};
+use crate::take::header;
+use crate::take::npy::{Array, Data};
+use crate::take::stored_zip;
 
 /// More codes of doubts are texts of their own, which one column each would not serve.
 const MOST_CODES: usize = 1000;

@@ -3,7 +3,8 @@
 use phalanx_hand::{Dof, Unit};
 use serde_json::{Map, Value, json};
 
-use super::{FORMAT_VERSION, JOINT_NAMES, header::FORMAT};
+use crate::take::frames::{FORMAT_VERSION, JOINT_NAMES};
+use crate::take::header::FORMAT;
 
 /// The JSON Schema (draft 2020-12) that every line of [`write_json_lines`](super::write_json_lines)
 /// keeps to: the first the `header`, each other a `frame`.

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use glam::{DMat3, DVec3};
 
-use super::{PoseEstimate, Take, TakeFrame, TakeHeader};
-use crate::{Error, Result};
+use crate::error::{Error, Result};
+use crate::take::frames::{PoseEstimate, Take, TakeFrame, TakeHeader};
 
 /// What parts the codes of doubts and the names of views in one cell.
 pub(super) const SEPARATOR: char = ';';
