@@ -4,11 +4,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
+use glam::DVec2;
 use image::codecs::jpeg::JpegEncoder;
+use phalanx::draw_silhouette;
 use phalanx_camera::{Camera, Rig};
 use phalanx_cli::files::Output;
 use phalanx_io::page::{ViewPicture, ViewPictures, view_page};
-use phalanx_io::take::Take;
+use phalanx_io::take::{Take, TakeFrame, TakeHeader};
+use phalanx_segmentation::Contour;
 
 use crate::{input, take_file};
 
@@ -97,9 +100,28 @@ fn of_camera(take: &Take, folder: &Path, camera: &Camera, most: usize) -> Result
             let at = this.estimate.as_ref()?.joints[joint];
             camera.project(at).map(|at| at * scale)
         });
-        pictures.push(ViewPicture { frame, jpeg, joints });
+        let outline = outline(take, this, camera, (width, height));
+        pictures.push(ViewPicture { frame, jpeg, joints, outline });
     }
     Ok(ViewPictures { name: camera.name.clone(), width, height, pictures })
+}
+
+/// The outline of a frame's estimated hand in a picture of a size; empty where there is none or it is out of
+/// sight.
+fn outline(
+    take: &Take,
+    frame: &TakeFrame,
+    camera: &Camera,
+    (width, height): (u32, u32),
+) -> Vec<Vec<DVec2>> {
+    let TakeHeader { hand, world_from_hand, .. } = &take.header;
+    let Some(estimate) = &frame.estimate else { return Vec::new() };
+    let camera = camera.with_intrinsics(camera.intrinsics.resized(width, height));
+    let Ok(mask) = draw_silhouette(&camera, hand, &estimate.pose, world_from_hand) else {
+        return Vec::new();
+    };
+    let piece = |piece: &[[f64; 2]]| piece.iter().copied().map(DVec2::from_array).collect();
+    Contour::trace(&mask).pieces().map(piece).collect()
 }
 
 /// A folder's files in the order of their names.

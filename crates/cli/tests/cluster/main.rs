@@ -73,7 +73,7 @@ fn snakemake_redoes_a_killed_part_alone_and_tracks_as_one_by_one() {
     let again = train();
     assert!(again.status.success(), "{again:?}");
     assert_eq!([1, 2, 4].map(|k| changed(&part(k))), before, "parts that were there are kept");
-    work.assert_is_whole(&work.path("hand.phalanx"));
+    work::assert_is_whole(&work.path("hand.phalanx"));
     let tracked = snakemake("takes", format!("track={}", work::TRACKING.join(" ")));
     assert!(tracked.status.success(), "{tracked:?}");
     work.assert_takes_are_as_one_by_one();

@@ -10,7 +10,7 @@ use crate::installed::run;
 use crate::work::Work;
 
 /// How long to wait for something that should come soon.
-const LONG: Duration = Duration::from_secs(100);
+const LONG: Duration = Duration::from_mins(10);
 const SHORT: Duration = Duration::from_millis(200);
 
 pub(crate) struct Slurm<'a> {
@@ -87,6 +87,13 @@ impl<'a> Slurm<'a> {
 
 impl Drop for Slurm<'_> {
     fn drop(&mut self) {
+        // Jobs outlive the daemons.
+        let user = run(Command::new("id").arg("-un"));
+        let _ = self
+            .command("scancel")
+            .args(["--full", "--signal=KILL", "--user"])
+            .arg(user.trim())
+            .output();
         for daemon in self.daemons.iter_mut().rev() {
             // It may have ended by itself.
             let _ = daemon.kill();

@@ -39,7 +39,7 @@ fn nothing_given_says_what_is_there_and_where_to_begin() {
     let desk = Desk::new();
     let outcome = run(desk.folder(), ["doctor"]);
     assert_eq!(outcome.code, Some(0), "{}", outcome.err);
-    assert!(outcome.out.starts_with("good    phalanx"), "{}", outcome.out);
+    assert!(outcome.out.starts_with("good    program  phalanx 0."), "{}", outcome.out);
     assert!(outcome.out.contains("\nnext: phalanx rig import "), "{}", outcome.out);
     let mut without_path = Command::new(env!("CARGO_BIN_EXE_phalanx"));
     let outcome: Outcome = without_path.arg("doctor").env("PATH", "").output().unwrap().into();

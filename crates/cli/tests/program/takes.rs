@@ -91,6 +91,41 @@ fn a_page_and_a_report_are_written() {
 }
 
 #[test]
+fn pictures_are_shown_with_joints_and_outline_of_the_hand() {
+    let folder = Folder::new();
+    let at = |name: &str| folder.0.path().join(name);
+    std::fs::write(at("rig.toml"), include_str!("../../fixtures/desk.toml")).unwrap();
+    std::fs::create_dir_all(at("frames/top")).unwrap();
+    for frame in ["0.png", "1.png"] {
+        image::RgbImage::new(40, 30).save(at("frames/top").join(frame)).unwrap();
+    }
+    let arguments = ["view", "take.csv", "--frames", "frames", "--rig", "rig.toml", "--out"];
+    folder.printed(&[&arguments[..], &["take.html"]].concat());
+    let page = String::from_utf8(folder.file("take.html")).unwrap();
+    let (_, outlines) = page.split_once("\"outlines\":[\"").unwrap();
+    let (outlines, _) = outlines.split_once("\"]").unwrap();
+    let outlines: Vec<&str> = outlines.split("\",\"").collect();
+    assert!(outlines.len() == 2 && outlines.iter().all(|outline| outline.len() > 500));
+    assert_eq!(page.matches("data:image/jpeg").count(), 2);
+}
+
+/// What other commands print, they print as JSON when asked.
+#[test]
+fn json_is_printed_where_text_is() {
+    let folder = Folder::new();
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        serde_json::from_str(&folder.printed(&[arguments, &["--json"]].concat())).unwrap()
+    };
+    let converted = json(&["convert", "take.csv", "--out", "a.bvh"]);
+    assert_eq!((&converted["file"], &converted["frames"]), (&"a.bvh".into(), &30.into()));
+    let report = json(&["report", "take.csv", "take.csv"]);
+    let row = report["rows"].as_array().unwrap().iter().find(|row| row["angle"] == "index.pip");
+    let groups = row.unwrap()["groups"].as_array().unwrap();
+    assert_eq!((groups.len(), &groups[2]["of"]), (3, &"difference".into()));
+    assert_eq!(groups[2]["range"]["value"], 0.0);
+}
+
+#[test]
 fn a_take_agrees_with_itself() {
     let folder = Folder::new();
     folder.printed(&["convert", "take.csv", "--out", "reference.trc"]);

@@ -38,6 +38,8 @@ pub struct ViewPicture {
     pub jpeg: Vec<u8>,
     /// Where the estimated joints are in it, px; none for one that is not to be drawn.
     pub joints: [Option<DVec2>; JOINTS],
+    /// The outline of the estimated hand in it, px, in pieces; none where it is not to be drawn.
+    pub outline: Vec<Vec<DVec2>>,
 }
 
 /// The page's data.
@@ -163,8 +165,19 @@ fn picture_data(view: &ViewPictures, frames: usize, step: usize) -> Result<Value
         "height": view.height,
         "frames": shown().map(|picture| picture.frame / step).collect::<Vec<_>>(),
         "data": shown().map(|picture| uri(&picture.jpeg)).collect::<Vec<_>>(),
-        "joints": reals(joints.flat_map(|at| [at.map(|at| at.x), at.map(|at| at.y)])),
+        "joints": reals(joints.flat_map(coordinates)),
+        "outlines": shown().map(|picture| outline(&picture.outline)).collect::<Vec<_>>(),
     }))
+}
+
+/// The points of an outline, with a point that is none after each piece.
+fn outline(pieces: &[Vec<DVec2>]) -> String {
+    let points = pieces.iter().flat_map(|piece| piece.iter().copied().map(Some).chain([None]));
+    reals(points.flat_map(coordinates))
+}
+
+fn coordinates(at: Option<DVec2>) -> [Option<f64>; 2] {
+    [at.map(|at| at.x), at.map(|at| at.y)]
 }
 
 /// The range of motion of the frames without a doubt.

@@ -96,14 +96,33 @@ function addPictures() {
       image.src = view.data[k];
       image.alt = `What ${view.name} saw in frame ${take.index[view.frames[k]]}, with the estimated hand`;
       caption.textContent = `${view.name}, frame ${take.index[view.frames[k]]}`;
-      drawJoints(canvas.getContext("2d"), joints.subarray(42 * k, 42 * k + 42), view.width, view.height);
+      const context = canvas.getContext("2d");
+      context.clearRect(0, 0, view.width, view.height);
+      drawOutline(context, new Float32Array(bytes(view.outlines[k])), view.width);
+      drawJoints(context, joints.subarray(42 * k, 42 * k + 42), view.width);
     });
   }
 }
 
+// The outline of the estimated hand; a point that is none ends a piece.
+function drawOutline(context, points, width) {
+  const size = Math.max(1, width / 320);
+  context.beginPath();
+  let begun = false;
+  for (let k = 0; k < points.length; k += 2) {
+    const isPoint = Number.isFinite(points[k]);
+    if (isPoint && begun) context.lineTo(points[k], points[k + 1]);
+    else if (isPoint) context.moveTo(points[k], points[k + 1]);
+    begun = isPoint;
+  }
+  for (const [line, colour] of [[3 * size, "#000a"], [1.5 * size, "#ff5fc8"]]) {
+    [context.lineWidth, context.strokeStyle] = [line, colour];
+    context.stroke();
+  }
+}
+
 // The 21 joints as lines over a picture, where they are in it.
-function drawJoints(context, joints, width, height) {
-  context.clearRect(0, 0, width, height);
+function drawJoints(context, joints, width) {
   const size = Math.max(1, width / 320);
   for (const [line, colour] of [[4 * size, "#000a"], [2 * size, "#4ff0a0"]]) {
     context.strokeStyle = colour;

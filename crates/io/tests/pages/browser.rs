@@ -42,6 +42,7 @@ fn pictures() -> ViewPictures {
         frame,
         jpeg: JPEG.to_vec(),
         joints: std::array::from_fn(|k| (k != 7).then(|| DVec2::splat(k as f64))),
+        outline: vec![vec![DVec2::new(2.0, 3.0), DVec2::new(18.0, 4.0), DVec2::new(9.0, 17.0)]],
     };
     let pictures = [0, 20, 40].map(picture).to_vec();
     ViewPictures { name: HOSTILE.to_owned(), width: JOINTS as u32, height: JOINTS as u32, pictures }
