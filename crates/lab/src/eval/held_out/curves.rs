@@ -8,12 +8,11 @@ use phalanx::Progress;
 use phalanx_multiview::CodebookTrainer;
 use serde::Serialize;
 
-use super::Ground;
+use super::ground::Ground;
 use super::histograms::ViewCodebooks;
 use super::learner::{Learner, codebooks, describe, pilot_contexts};
 use super::method::Method;
-use super::row::Row;
-use super::test_on;
+use super::row::{self, Row};
 use crate::data::described::Samples;
 use crate::data::sets::{Augment, Set, Test, random};
 
@@ -105,7 +104,7 @@ fn points_of(
     for test in TESTS {
         let set = test.set(&ground.rig, &ground.hand, &[]);
         // Learners' rows come in order, as many for each as it has methods.
-        let rows = test_on(&set, learners, ground, progress)?;
+        let rows = row::of_set(&set, learners, ground, progress)?;
         let each = rows.len() / learners.len();
         let places = places.iter().flat_map(|&at| std::iter::repeat_n(at, each));
         points.extend(rows.into_iter().zip(places).map(|(row, at)| Point { over, at, row }));

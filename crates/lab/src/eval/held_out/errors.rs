@@ -5,7 +5,7 @@ use glam::DVec3;
 use phalanx::{Scene, targets};
 use phalanx_hand::{Dof, JOINTS, Pose};
 
-use super::Ground;
+use super::ground::Ground;
 
 /// The poses and joints of a test set.
 pub(crate) struct Truth {

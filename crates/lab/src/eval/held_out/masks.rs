@@ -8,8 +8,8 @@ use phalanx_hand::Pose;
 use phalanx_multiview::Scratch;
 use phalanx_segmentation::{Mask, Silhouette};
 
-use super::Ground;
 use super::errors::Truth;
+use super::ground::Ground;
 use super::learner::{Learner, joined};
 use super::presets::{self, Learnt};
 use super::row::{self, Row};

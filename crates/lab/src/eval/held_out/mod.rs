@@ -2,6 +2,7 @@
 
 mod curves;
 pub(crate) mod errors;
+mod ground;
 mod histograms;
 pub(crate) mod learner;
 mod masks;
@@ -17,9 +18,9 @@ use std::process::ExitCode;
 
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
-use phalanx::{Framing, OrientationRule, Progress, SceneSource};
+use phalanx::{Framing, OrientationRule, Progress};
 use phalanx_camera::Rig;
-use phalanx_hand::{HandShape, Pose};
+use phalanx_hand::Pose;
 use serde::Serialize;
 
 use crate::data::data_set::DataSet;
@@ -29,12 +30,13 @@ use crate::eval::table1::single_view;
 use crate::files;
 use crate::progress;
 use curves::Point;
-use errors::Truth;
-use learner::{Learner, describe, learn};
+use learner::{Learner, learn};
 use masks::Masks;
 use method::Method;
 use presets::Learnt;
 use row::Row;
+
+pub(crate) use ground::Ground;
 
 /// Samples of the random training sets, unless it is said how many.
 pub(crate) const RANDOM_SAMPLES: usize = 5000;
@@ -110,13 +112,6 @@ struct Results {
     rows: Vec<Row>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     curves: Vec<Point>,
-}
-
-/// The rig and the hand that are learnt for.
-pub(crate) struct Ground {
-    pub(crate) rig: Rig,
-    pub(crate) hand: HandShape,
-    pub(crate) rule: OrientationRule,
 }
 
 /// Prints the table or the curves; the exit code tells whether every frame of `--masks` is in.
@@ -211,7 +206,7 @@ impl Protocol<'_> {
         let mut rows = Vec::new();
         for test in tests.iter().filter(|_| !learners.is_empty()) {
             let set = test.set(&ground.rig, &ground.hand, motion);
-            rows.extend(test_on(&set, &learners, ground, progress)?);
+            rows.extend(row::of_set(&set, &learners, ground, progress)?);
         }
         Ok((learners, rows))
     }
@@ -227,19 +222,6 @@ impl Protocol<'_> {
         }
         Ok(rows)
     }
-}
-
-/// Every learner's every method on one test set.
-fn test_on(
-    set: &Set<'_>,
-    learners: &[Learner],
-    ground: &Ground,
-    progress: &dyn Progress,
-) -> Result<Vec<Row>> {
-    let codebooks: Vec<_> = learners.iter().map(|learner| learner.codebooks.clone()).collect();
-    let seen = describe(set, ground.rule, &codebooks, progress)?;
-    let truth = Truth::of(seen.numbers.iter().map(|&number| set.scene(number)), ground);
-    row::rows(set.name, learners, &seen.samples, &truth, ground)
 }
 
 /// One view (the top, or the first of a rig without one), then all.

@@ -11,8 +11,8 @@ use phalanx_refine::{NuisanceParameters, PoseFitSettings};
 use phalanx_segmentation::{Mask, Silhouette};
 use rayon::prelude::*;
 
-use super::Ground;
 use super::errors::Truth;
+use super::ground::Ground;
 use super::method::Answer;
 use super::refined::{self, Starts};
 use super::row::{Outcome, Row};

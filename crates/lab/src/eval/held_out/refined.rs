@@ -10,7 +10,7 @@ use phalanx_refine::{
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
-use super::Ground;
+use super::ground::Ground;
 use crate::data::sets::{self, Augment, Set};
 
 /// Poses that tell how angles go together.

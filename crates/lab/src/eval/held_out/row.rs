@@ -2,15 +2,17 @@
 
 use anyhow::{Context, Result};
 use faer::MatRef;
+use phalanx::{Progress, SceneSource};
 use phalanx_hand::Dof;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::Ground;
 use super::errors::{Truth, active_angles};
-use super::learner::Learner;
+use super::ground::Ground;
+use super::learner::{Learner, describe};
 use super::method::{Method, Predictor};
 use crate::data::described::Samples;
+use crate::data::sets::Set;
 use crate::metrics::AngleErrors;
 
 /// How one method, learnt from one set through some cameras, did on one test.
@@ -104,4 +106,17 @@ impl Outcome {
             us_per_estimate: None,
         })
     }
+}
+
+/// Every learner's every method on one test set.
+pub(crate) fn of_set(
+    set: &Set<'_>,
+    learners: &[Learner],
+    ground: &Ground,
+    progress: &dyn Progress,
+) -> Result<Vec<Row>> {
+    let codebooks: Vec<_> = learners.iter().map(|learner| learner.codebooks.clone()).collect();
+    let seen = describe(set, ground.rule, &codebooks, progress)?;
+    let truth = Truth::of(seen.numbers.iter().map(|&number| set.scene(number)), ground);
+    rows(set.name, learners, &seen.samples, &truth, ground)
 }

@@ -6,7 +6,7 @@ use phalanx::{Describer, SceneDescriber, SceneSource};
 use phalanx_multiview::Scratch;
 use phalanx_segmentation::Silhouette;
 
-use super::Ground;
+use super::ground::Ground;
 use super::learner::Learner;
 use super::row::Row;
 use crate::clock::timed;

@@ -1,8 +1,10 @@
 //! `cargo xtask eval-table1`: the paper's Table 1 (§ 5.2) on our data.
 
+mod job;
 mod method;
 mod paper;
 mod print;
+mod row;
 mod trial;
 
 use std::path::PathBuf;
@@ -19,18 +21,16 @@ use crate::data::described::Described;
 use crate::files;
 use crate::metrics::AngleErrors;
 use crate::progress;
-use method::{Counts, Method};
-use paper::PaperRow;
+use job::{Job, counts, jobs};
+use method::Method;
 use trial::Outcome;
 
 pub(crate) use method::{Counts as PaperCounts, Method as TableMethod};
 pub(crate) use print::{HEADER, legend, lines};
+pub(crate) use row::{Row, SPLITS};
 
 /// The camera of the single-view rows.
 const SINGLE_VIEW: &str = "top";
-/// Every figure is the mean over this many random even splits.
-pub(crate) const SPLITS: u64 = 5;
-
 /// What is tested.
 #[derive(Args)]
 pub struct Arguments {
@@ -41,25 +41,6 @@ pub struct Arguments {
     /// Write the rows as JSON too.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-}
-
-/// One row of the table.
-#[derive(Serialize)]
-pub(crate) struct Row {
-    pub(crate) views: usize,
-    pub(crate) data_set: String,
-    pub(crate) kernels: &'static str,
-    pub(crate) counts: &'static str,
-    pub(crate) selected_features: usize,
-    pub(crate) selected_samples: usize,
-    pub(crate) train_samples: usize,
-    pub(crate) test_samples: usize,
-    pub(crate) mae_deg: f64,
-    pub(crate) std_deg: f64,
-    pub(crate) worst_deg: f64,
-    pub(crate) worst_dof: &'static str,
-    pub(crate) mean_predictor_mae_deg: f64,
-    pub(crate) paper: Option<PaperRow>,
 }
 
 #[derive(Serialize)]
@@ -141,36 +122,6 @@ fn run_jobs(
     let trials = trials.into_iter().collect::<Result<Vec<_>>>()?;
     let per_views = trials.chunks(SPLITS as usize).zip(views);
     Ok(per_views.flat_map(|(trials, views)| rows(&data_set.name, views.len(), trials)).collect())
-}
-
-/// A method at a number of columns, under the names of the rows that it fills.
-#[derive(Clone, PartialEq, Eq)]
-struct Job {
-    method: Method,
-    counts: Counts,
-    rows: Vec<&'static str>,
-}
-
-/// What is fitted on each split: every method at the paper's counts, and the selecting ones at the counts of the most views too, where those differ.
-fn jobs(data_set: &Described, views: usize, most_views: usize) -> Vec<Job> {
-    let (paper, equal) = (counts(data_set, views), counts(data_set, most_views));
-    let mut jobs = Vec::new();
-    for method in Method::COUNTED {
-        if paper == equal {
-            jobs.push(Job { method, counts: paper, rows: vec!["paper", "equal"] });
-        } else {
-            jobs.push(Job { method, counts: paper, rows: vec!["paper"] });
-            jobs.push(Job { method, counts: equal, rows: vec!["equal"] });
-        }
-    }
-    let uncounted = |method| Job { method, counts: paper, rows: vec!["paper"] };
-    jobs.extend(Method::UNCOUNTED.map(uncounted));
-    jobs
-}
-
-/// The paper's counts for a number of views; of samples, as many as there are.
-fn counts(data_set: &Described, views: usize) -> Counts {
-    Counts::paper(views, &data_set.name).at_most(data_set.poses.len().div_ceil(2))
 }
 
 /// The rows of one number of views: each job's mean over the splits.

@@ -5,7 +5,7 @@ use comfy_table::{Table, presets};
 use anyhow::Result;
 
 use super::paper::PaperRow;
-use super::{Row, SPLITS};
+use super::row::{Row, SPLITS};
 use crate::files;
 
 pub(crate) const HEADER: [&str; 12] = [

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use faer::MatRef;
 use phalanx_hand::Dof;
 
-use super::Job;
+use super::job::Job;
 use crate::baselines::neighbours::nearest_mean;
 use crate::data::described::{Halves, Samples};
 use crate::metrics::{AngleErrors, mean_predictor};
