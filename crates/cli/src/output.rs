@@ -1,9 +1,9 @@
 //! An estimate as text and JSON.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Display, Formatter, Write as _};
 
 use anyhow::Result;
-use phalanx::{Estimate, Estimator};
+use phalanx::{Cause, Estimate, Estimator, ViewDoubt};
 use phalanx_hand::{Dof, Unit};
 use phalanx_segmentation::{Forearm, ForearmCue};
 use serde::{Serialize, Serializer};
@@ -26,7 +26,47 @@ struct Report<'a> {
     joints_mm: Vec<[f64; 3]>,
     views: Vec<View<'a>>,
     /// What should be known before the estimate is trusted.
-    doubts: &'a [String],
+    doubts: &'a [Doubt],
+}
+
+/// Why an estimate may be wrong.
+#[derive(Serialize)]
+pub(crate) struct Doubt {
+    /// The camera whose view shows it; none of a doubt about the whole.
+    view: Option<String>,
+    cause: &'static str,
+    /// The cause in words.
+    text: String,
+}
+
+impl Doubt {
+    pub(crate) fn whole(cause: &'static str, text: String) -> Self {
+        Self { view: None, cause, text }
+    }
+
+    pub(crate) fn view(camera: &str, cause: &'static str, text: String) -> Self {
+        Self { view: Some(camera.to_owned()), cause, text }
+    }
+
+    pub(crate) fn of_view(estimator: &Estimator, doubt: &ViewDoubt) -> Self {
+        let cameras = &estimator.rig().cameras;
+        let text = match doubt.cause {
+            Cause::SwappedCamera(other) => {
+                format!("it shows what camera '{}' should see", cameras[other].name)
+            }
+            cause => cause.to_string(),
+        };
+        Self::view(&cameras[doubt.view].name, doubt.cause.name(), text)
+    }
+}
+
+impl Display for Doubt {
+    fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
+        match &self.view {
+            Some(camera) => write!(out, "camera '{camera}': {}", self.text),
+            None => out.write_str(&self.text),
+        }
+    }
 }
 
 /// Each number of the pose by name, in the pose's order.
@@ -67,14 +107,12 @@ struct View<'a> {
     camera: &'a str,
     forearm: &'static str,
     border_crossings: usize,
+    /// Intersection over union of the estimated hand with what was seen, 0 to 1.
+    overlap: Option<f64>,
 }
 
 /// The estimate as JSON, one object over several lines.
-pub(crate) fn json(
-    estimator: &Estimator,
-    estimate: &Estimate,
-    doubts: &[String],
-) -> Result<String> {
+pub(crate) fn json(estimator: &Estimator, estimate: &Estimate, doubts: &[Doubt]) -> Result<String> {
     Ok(serde_json::to_string_pretty(&Report::new(estimator, estimate, doubts))? + "\n")
 }
 
@@ -82,7 +120,7 @@ pub(crate) fn json(
 pub(crate) fn json_line(
     estimator: &Estimator,
     frame: &str,
-    estimated: Option<(&Estimate, &[String])>,
+    estimated: Option<(&Estimate, &[Doubt])>,
     error: Option<&str>,
 ) -> Result<String> {
     let report = estimated.map(|(estimate, doubts)| Report::new(estimator, estimate, doubts));
@@ -90,9 +128,10 @@ pub(crate) fn json_line(
 }
 
 impl<'a> Report<'a> {
-    fn new(estimator: &'a Estimator, estimate: &'a Estimate, doubts: &'a [String]) -> Self {
-        let views = views(estimator, estimate).map(|(camera, forearm)| View {
+    fn new(estimator: &'a Estimator, estimate: &'a Estimate, doubts: &'a [Doubt]) -> Self {
+        let views = views(estimator, estimate).enumerate().map(|(view, (camera, forearm))| View {
             camera,
+            overlap: estimate.overlaps.get(view).copied(),
             forearm: match forearm.cue {
                 ForearmCue::Border => "border",
                 ForearmCue::SmoothEnd => "stump",
@@ -126,20 +165,6 @@ pub(crate) fn text(estimate: &Estimate) -> String {
         writeln!(text, "{dof:18} {value:8.1} {spread}").expect("writing to a string");
     }
     text
-}
-
-/// What should be known of an estimate's views before it is trusted.
-pub(crate) fn doubts(estimator: &Estimator, estimate: &Estimate) -> Vec<String> {
-    let doubt = |(camera, forearm): (&str, &Forearm)| match (forearm.cue, forearm.crossings) {
-        (ForearmCue::SmoothEnd, _) => Some(format!(
-            "camera '{camera}': the forearm does not reach the border of the picture; its end was guessed"
-        )),
-        (ForearmCue::Border, 0 | 1) => None,
-        (ForearmCue::Border, crossings) => Some(format!(
-            "camera '{camera}': the hand crosses the border {crossings} times; the longest crossing is taken for the forearm"
-        )),
-    };
-    views(estimator, estimate).filter_map(doubt).collect()
 }
 
 fn views<'a>(

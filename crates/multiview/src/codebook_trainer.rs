@@ -1,6 +1,7 @@
 //! How the codebooks of the views are learnt.
 
 use phalanx_codebook::{AnyEncoder, Codebook, KMeans, SoftAssignment, Vlad};
+use phalanx_sampling::random_subset;
 
 use crate::error::{Error, Result};
 use crate::pooled_encoder::PooledEncoder;
@@ -15,7 +16,7 @@ pub struct CodebookTrainer {
     pub centres: usize,
     /// How the shape contexts vote.
     pub assignment: SoftAssignment,
-    /// At most this many shape contexts are clustered for a codebook, evenly spaced over all.
+    /// At most this many shape contexts are clustered for a codebook, drawn at random from all.
     pub most_samples: usize,
     /// The clustering; its number of centres is replaced by each view's share, and each view
     /// has a seed of its own that follows from this one.
@@ -95,7 +96,7 @@ impl CodebookTrainer {
                 ..self.clustering
             };
             let of_view = contexts.iter().map(|sample| sample.as_ref()[view].as_ref());
-            let fit = clustering.fit(&evenly_spaced(of_view, dim, self.most_samples), dim);
+            let fit = clustering.fit(&some_of(of_view, dim, self.most_samples), dim);
             fit.map(|fit| fit.codebook).map_err(|reason| Error::View { view, reason })
         });
         codebooks.collect()
@@ -132,7 +133,7 @@ impl CodebookTrainer {
         check(contexts, dim)?;
         let clustering = KMeans { centres: self.centres, ..self.clustering };
         let of_all = contexts.iter().flat_map(AsRef::as_ref).map(AsRef::as_ref);
-        let fit = clustering.fit(&evenly_spaced(of_all, dim, self.most_samples), dim);
+        let fit = clustering.fit(&some_of(of_all, dim, self.most_samples), dim);
         PooledEncoder::from_parts(fit.map_err(Error::Pooled)?.codebook, self.assignment)
     }
 }
@@ -156,21 +157,24 @@ fn check<S: AsRef<[V]>, V: AsRef<[f32]>>(contexts: &[S], dim: usize) -> Result<u
     Ok(views)
 }
 
-/// At most `most` of the shape contexts, evenly spaced.
-fn evenly_spaced<'a>(
+/// The seed of the shape contexts that are clustered.
+const SUBSET_SEED: u64 = 0;
+
+/// At most `most` of the shape contexts, drawn at random. Every n-th would have the same phase of a motion
+/// that repeats itself.
+fn some_of<'a>(
     contexts: impl Iterator<Item = &'a [f32]> + Clone,
     dim: usize,
     most: usize,
 ) -> Vec<f32> {
     let total = contexts.clone().map(<[f32]>::len).sum::<usize>() / dim;
-    let kept = total.min(most);
-    let mut spaced = Vec::with_capacity(kept * dim);
-    let mut taken = 0;
-    for (k, context) in contexts.flat_map(|values| values.chunks_exact(dim)).enumerate() {
-        if taken < kept && k == taken * total / kept {
-            spaced.extend_from_slice(context);
-            taken += 1;
+    let chosen = random_subset(total, most, SUBSET_SEED);
+    let mut some = Vec::with_capacity(chosen.len() * dim);
+    let mut chosen = chosen.into_iter().peekable();
+    for (number, context) in contexts.flat_map(|values| values.chunks_exact(dim)).enumerate() {
+        if chosen.next_if_eq(&number).is_some() {
+            some.extend_from_slice(context);
         }
     }
-    spaced
+    some
 }

@@ -197,17 +197,22 @@ fn the_same_at_any_number_of_threads() {
     assert_eq!(fit(1), fit(8));
 }
 
+/// A periodic list, of which every n-th item is the same: a codebook of few of its items still has all of
+/// them.
 #[test]
-fn few_samples_are_taken_evenly() {
-    // 240 histograms, of which 12 make 12 centres: those centres are the histograms themselves.
-    let all = samples(1);
-    let few =
-        CodebookTrainer { centres: 12, most_samples: 12, ..vocabulary() }.fit(&all, BINS).unwrap();
-    let flat: Vec<f32> = all.concat().concat();
-    let spaced = flat.chunks_exact(BINS).step_by(20);
-    for histogram in spaced {
-        let nearest = few.codebooks()[0].nearest(histogram).unwrap();
-        assert!(nearest.distance < 1e-6, "{}", nearest.distance);
+fn few_samples_of_a_periodic_list_see_every_phase() {
+    const PHASES: usize = 4;
+    let histogram = |phase: usize| {
+        let mut histogram = vec![0.0_f32; BINS];
+        histogram[phase] = 1.0;
+        histogram
+    };
+    let all: Vec<Views> = (0..400).map(|k| vec![histogram(k % PHASES)]).collect();
+    let few = CodebookTrainer { centres: PHASES, most_samples: 100, ..vocabulary() };
+    let codebooks = few.fit(&all, BINS).unwrap();
+    for phase in 0..PHASES {
+        let nearest = codebooks.codebooks()[0].nearest(&histogram(phase)).unwrap();
+        assert!(nearest.distance < 1e-6, "phase {phase}: {}", nearest.distance);
     }
 }
 

@@ -1,10 +1,10 @@
 #![doc = include_str!("../README.md")]
 
+mod checking;
 mod error;
 mod estimator;
 mod features;
 mod fitting;
-mod global_pose;
 mod images;
 mod localize;
 mod losses;
@@ -14,15 +14,17 @@ mod progress;
 mod property;
 mod refiner;
 mod restarts;
-mod sighting;
 mod synthesis;
 mod training;
 mod window;
 
+pub use checking::doubt::{Cause, ViewDoubt};
+pub use checking::usual::UsualExplanation;
 pub use error::{Error, Result};
-pub use estimator::error_model::Hypothesis;
+pub use estimator::error_model::{ErrorModel, Hypothesis};
 pub use estimator::estimate::{Estimate, Estimator, Workspace};
 pub use estimator::observation::{Observation, ObservedView};
+pub use estimator::placement::PlacementErrors;
 pub use estimator::regression::FittedRegressor;
 pub use features::describer::{
     Describer, OrientationRule, ViewConfig, WORKING_SIZE, working_camera,
@@ -32,11 +34,11 @@ pub use fitting::{
     FitDoubt, FrameFit, Missing, Proportions, TakeFit, TakeFrame, TakeSettings, ViewFit,
     VolumeEstimate, estimate_volume, fit_frame, fit_take,
 };
-pub use global_pose::{GlobalStart, initial_global};
 pub use images::decode::decode_picture;
 pub use images::overlay::{draw_overlay, draw_window_overlay, working_window};
 pub use images::picture::{Picture, Segmenter, mask_from, photograph_from};
 pub use images::segmentation_file::Segmentation;
+pub use localize::global_pose::{GlobalStart, initial_global};
 pub use localize::{Arm, BoundingSphere, Detections, HandCrop, Placement, associate};
 pub use losses::{LossReason, Losses};
 pub use phalanx_segmentation::{Mask, Segment};

@@ -2,21 +2,22 @@
 
 use glam::DAffine3;
 use phalanx_camera::{Camera, Rig};
-use phalanx_hand::{Dof, HandShape, Pose, sample_pose};
+use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::{
     BundleAdjustment, BundleFrame, BundleResult, PoseFit, PoseFitSettings, PosePrior,
     SilhouetteObservation,
 };
 use phalanx_segmentation::Silhouette;
 
-use crate::global_pose::PLACED;
-use crate::{
-    Error, Estimate, Estimator, Framing, Hypothesis, ItemRng, Observation, ObservedView, Picture,
-    Result, Workspace, working_camera,
-};
-
-/// Poses from the prior that tell how angles go together.
-const POSTURES: u64 = 2000;
+use crate::error::{Error, Result};
+use crate::estimator::error_model::Hypothesis;
+use crate::estimator::estimate::{Estimate, Estimator, Workspace};
+use crate::estimator::observation::Observation;
+use crate::estimator::placement::PLACED;
+use crate::features::describer::working_camera;
+use crate::images::picture::Picture;
+use crate::synthesis::postures;
+use crate::window::Framing;
 
 /// Where borders stay further apart than this, px, other starts are worth their time. Two views leave
 /// more open, so that what fits well may still be wrong; a hand that had to be doubted never fits as
@@ -69,12 +70,21 @@ impl Refiner {
         poses: &[Pose],
         refinement: PoseFitSettings,
     ) -> Result<Self> {
+        Self::of(rig, hand, PosePrior::of_poses(poses)?, refinement)
+    }
+
+    fn of(
+        rig: &Rig,
+        hand: &HandShape,
+        postures: PosePrior,
+        refinement: PoseFitSettings,
+    ) -> Result<Self> {
         hand.validate()?;
         Ok(Self {
             cameras: rig.cameras.iter().map(working_camera).collect::<Result<_>>()?,
             rest: rig.volume.rest_frame(),
             hand: hand.clone(),
-            postures: PosePrior::of_poses(poses)?,
+            postures,
             refinement,
         })
     }
@@ -85,12 +95,7 @@ impl Refiner {
     /// # Errors
     /// As of [`new`](Self::new).
     pub fn for_estimator(estimator: &Estimator, refinement: PoseFitSettings) -> Result<Self> {
-        let pose = |item| {
-            let mut random = ItemRng::new(0, item);
-            sample_pose(|| random.uniform())
-        };
-        let postures: Vec<Pose> = (0..POSTURES).map(pose).collect();
-        Self::new(estimator.rig(), estimator.hand(), &postures, refinement)
+        Self::of(estimator.rig(), estimator.hand(), postures::coupled().clone(), refinement)
     }
 
     /// The same for another hand, such as a calibrated one.
@@ -146,11 +151,7 @@ impl Refiner {
     pub fn evidence_of(&self, observation: &Observation) -> Result<Vec<SilhouetteObservation>> {
         self.check_count(observation.views.len())?;
         let pairs = self.cameras.iter().zip(&observation.views);
-        let evidence = |(camera, view): (&Camera, &ObservedView)| match &view.window {
-            Some(window) => window.evidence(&view.silhouette),
-            None => Ok(SilhouetteObservation::new(camera, &view.silhouette.mask)?),
-        };
-        pairs.map(evidence).collect()
+        pairs.map(|(camera, view)| view.evidence(camera)).collect()
     }
 
     fn check_count(&self, found: usize) -> Result<()> {
@@ -241,6 +242,7 @@ impl Refiner {
         let fit =
             fits.next().ok_or(Error::Mismatch { part: "refined poses", found: 0, expected: 1 })?;
         let refined = self.refined_estimate(estimate.clone(), &fit)?;
+        let refined = estimator.checked(&self.hand, refined)?;
         Ok(RefinedEstimate { estimate, refined, fit, others: fits.collect() })
     }
 

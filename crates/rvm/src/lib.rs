@@ -18,7 +18,6 @@ mod uncertainty;
 
 pub use basis::kernel::{Bandwidth, Kernel};
 pub use basis::spec::{BasisSpec, PilotSample};
-pub use data::permutation::random_subset;
 pub use data::scaler::StandardScaler;
 pub use data::size::ProblemSize;
 pub use error::{Error, Result};
@@ -32,6 +31,7 @@ pub use model::parts::{Basis, ModelParts, Posterior};
 pub use model::regressor::Regressor;
 pub use model::report::{Fit, Progress, Report, Trace};
 pub use model::scratch::Scratch;
+pub use phalanx_sampling::random_subset;
 pub use ridge::Ridge;
 pub use ridge::kernel_ridge::{KernelRidge, Regularisation};
 pub use ridge::nystrom::{NystromRegularisation, NystromRidge, PredictiveDeviation};

@@ -17,8 +17,9 @@ use phalanx_refine::{NuisanceParameters, PoseFitSettings};
 use phalanx_segmentation::Silhouette;
 
 use crate::input::{self, Crop};
+use crate::no_hand;
+use crate::output::{self, Doubt};
 use crate::segment::{Pictures, Prepared, SegmentArguments};
-use crate::{no_skin, output};
 use phalanx_cli::files::{Output, print};
 use stills::{Still, stills};
 
@@ -63,7 +64,7 @@ struct Setup<'a> {
 /// What is known of a frame, and the pictures that tell it.
 struct Answer {
     estimate: Estimate,
-    doubts: Vec<String>,
+    doubts: Vec<Doubt>,
     pictures: Vec<DynamicImage>,
 }
 
@@ -91,7 +92,7 @@ fn one(setup: &Setup<'_>, still: &Still, overlay_to: Option<Output>) -> Result<(
         // The picture is a by-product: without it the estimate is as good.
         let drawn = overlay(estimator, hand, &estimate, &pictures, &mut doubts);
         if let Err(error) = drawn.and_then(|picture| output.write_png(&picture)) {
-            doubts.push(format!("there is no overlay: {error:#}"));
+            doubts.push(Doubt::whole("no_overlay", format!("there is no overlay: {error:#}")));
         }
     }
     for doubt in &doubts {
@@ -121,9 +122,8 @@ fn several(setup: &Setup<'_>, stills: &[Still]) -> Result<ExitCode> {
             Ok(answer) => (&answer.doubts[..], None),
             Err(error) => (&[][..], Some(format!("{error:#}"))),
         };
-        for said in doubts.iter().chain(&error) {
-            eprintln!("phalanx: frame {name}: {said}");
-        }
+        let said = doubts.iter().map(Doubt::to_string).chain(error.clone());
+        said.for_each(|said| eprintln!("phalanx: frame {name}: {said}"));
         failed += usize::from(error.is_some());
         let estimated = answer.as_ref().map(|answer| (&answer.estimate, doubts)).ok();
         print(&if setup.arguments.json {
@@ -146,19 +146,31 @@ impl Setup<'_> {
         let paths: Vec<PathBuf> = still.paths.iter().flatten().cloned().collect();
         let pictures = paths.iter().map(|path| input::picture(path, arguments.crop));
         let pictures = pictures.collect::<Result<Vec<_>>>()?;
-        let estimate = match &self.pictures {
-            Pictures::Masks => of_masks(estimator, &paths, &pictures, workspace)?,
-            found @ Pictures::Photographs(_) => {
-                of_photographs(estimator, found, &pictures, workspace)?
-            }
-        };
-        let mut doubts = output::doubts(estimator, &estimate);
+        let prepared = self.prepared(&paths, &pictures)?;
+        let views: Vec<Picture<'_>> = prepared.iter().map(Prepared::as_picture).collect();
+        let estimate = estimator
+            .estimate(&views, workspace)
+            .map_err(|error| no_hand::explained(error, estimator, &prepared))?;
+        let mut doubts = Vec::new();
         let estimate = if arguments.refine {
             refine(estimator, hand, estimate, &mut doubts)?
         } else {
             estimate
         };
+        let of_views = estimator.explain(&views, &estimate, workspace)?;
+        doubts.extend(of_views.iter().map(|doubt| Doubt::of_view(estimator, doubt)));
         Ok(Answer { estimate, doubts, pictures })
+    }
+
+    /// The pictures as the estimator takes them.
+    fn prepared(&self, paths: &[PathBuf], pictures: &[DynamicImage]) -> Result<Vec<Prepared<'_>>> {
+        if matches!(self.pictures, Pictures::Masks) {
+            check_levels(paths, pictures)?;
+        }
+        // More pictures than cameras are the estimator's to refuse.
+        let names = self.estimator.rig().cameras.iter().map(|camera| camera.name.as_str());
+        let named = pictures.iter().zip(names.chain(std::iter::repeat("")));
+        named.map(|(picture, name)| self.pictures.prepared(name, picture)).collect()
     }
 }
 
@@ -173,12 +185,12 @@ fn overlay_output(arguments: &Arguments) -> Result<Option<Output>> {
     Ok(Some(output))
 }
 
-/// The refined estimate. That it did not settle, or that borders stay apart, is a doubt.
+/// The refined estimate. That it did not settle is a doubt.
 fn refine(
     estimator: &Estimator,
     hand: &HandShape,
     estimate: Estimate,
-    doubts: &mut Vec<String>,
+    doubts: &mut Vec<Doubt>,
 ) -> Result<Estimate> {
     let refinement = PoseFitSettings {
         nuisance: Some(NuisanceParameters::default()),
@@ -187,59 +199,27 @@ fn refine(
     let refiner = Refiner::for_estimator(estimator, refinement)?.with_hand(hand)?;
     let RefinedEstimate { refined, fit, .. } = refiner.refine_estimate(estimator, estimate)?;
     if !fit.converged {
-        doubts.push("the refinement stopped before it settled".to_owned());
-    }
-    for (camera, overlap) in estimator.rig().cameras.iter().zip(&fit.ious) {
-        if *overlap < GOOD_OVERLAP {
-            let camera = &camera.name;
-            doubts.push(format!(
-                "camera '{camera}': the refined hand overlaps its silhouette by {overlap:.2} only"
-            ));
-        }
+        let text = "the refinement stopped before it settled".to_owned();
+        doubts.push(Doubt::whole("unsettled", text));
     }
     Ok(refined)
 }
-
-/// Overlap (intersection over union) below which a refined hand is doubtful.
-const GOOD_OVERLAP: f64 = 0.8;
 
 fn is_png(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
-fn of_masks(
-    estimator: &Estimator,
-    paths: &[PathBuf],
-    pictures: &[DynamicImage],
-    workspace: &mut Workspace,
-) -> Result<Estimate> {
-    let masks: Vec<_> = pictures.iter().map(mask_from).collect();
-    for (path, mask) in paths.iter().zip(&masks) {
-        if let Some(level @ 1..=127) = mask.iter().max() {
+/// Refuses masks in which nothing is hand, but something may have been meant to be.
+fn check_levels(paths: &[PathBuf], pictures: &[DynamicImage]) -> Result<()> {
+    for (path, picture) in paths.iter().zip(pictures) {
+        if let Some(level @ 1..=127) = mask_from(picture).iter().max() {
             bail!(
                 "{}: brighter than 127 is hand; the brightest pixel has level {level}",
                 path.display()
             );
         }
     }
-    let masks: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
-    Ok(estimator.estimate(&masks, workspace)?)
-}
-
-fn of_photographs(
-    estimator: &Estimator,
-    found: &Pictures,
-    pictures: &[DynamicImage],
-    workspace: &mut Workspace,
-) -> Result<Estimate> {
-    // More pictures than cameras are the estimator's to refuse.
-    let names = estimator.rig().cameras.iter().map(|camera| camera.name.as_str());
-    let named = pictures.iter().zip(names.chain(std::iter::repeat("")));
-    let prepared: Vec<Prepared<'_>> =
-        named.map(|(picture, name)| found.prepared(name, picture)).collect::<Result<_>>()?;
-    let pictures: Vec<Picture<'_>> = prepared.iter().map(Prepared::as_picture).collect();
-    let estimate = estimator.estimate(&pictures, workspace);
-    estimate.map_err(|error| no_skin::explained(error, estimator, &prepared))
+    Ok(())
 }
 
 /// The pictures side by side with what was seen and estimated. An estimated hand that cannot be
@@ -249,7 +229,7 @@ fn overlay(
     hand: &HandShape,
     estimate: &Estimate,
     pictures: &[DynamicImage],
-    doubts: &mut Vec<String>,
+    doubts: &mut Vec<Doubt>,
 ) -> Result<RgbImage> {
     let rest = estimator.rig().volume.rest_frame();
     let mut panels = Vec::new();
@@ -261,8 +241,8 @@ fn overlay(
             .map_err(anyhow::Error::from)
             .and_then(|drawn| Silhouette::from_mask(&drawn).map_err(anyhow::Error::from));
         if let Err(reason) = &estimated {
-            let camera = &camera.name;
-            doubts.push(format!("camera '{camera}': the estimated hand is not drawn: {reason}"));
+            let text = format!("the estimated hand is not drawn: {reason}");
+            doubts.push(Doubt::view(&camera.name, "not_drawn", text));
         }
         let mut canvas = pictures[view].to_rgb8();
         let estimated = estimated.as_ref().ok();

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use glam::DVec3;
 use image::DynamicImage;
-use phalanx::{Estimator, NoProgress, Training, draw_silhouette};
+use phalanx::{Estimator, FixedPoses, NoProgress, Training, draw_silhouette};
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
 use phalanx_multiview::CodebookTrainer;
@@ -64,6 +64,16 @@ impl Desk {
             desk.save(&format!("{}.png", camera.name), &photograph.into());
         }
         desk
+    }
+
+    /// Makes `model` know which of its answers to doubt.
+    pub(crate) fn learn_doubts(&self) {
+        let (rig, hand) = (rig(), HandShape::adult());
+        let poses: Vec<Pose> = (0..200).map(|k| closing(f64::from(k) / 199.0)).collect();
+        let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
+        let model = Estimator::from_bytes(&self.read("model")).unwrap();
+        let model = model.fit_error_model(&scenes, &NoProgress).unwrap();
+        self.write("model", &model.to_bytes().unwrap());
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {

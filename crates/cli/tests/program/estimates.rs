@@ -339,3 +339,23 @@ fn a_recorded_background_and_an_own_model_of_skin_tell_the_hand() {
     refused(&["--segment", "plain", "--mask"], "cannot be used with");
     assert_eq!(learn(&["--out", "nothing"]).code, Some(2));
 }
+
+#[test]
+fn inverted_masks_are_doubted_by_view_and_cause() {
+    let desk = Desk::new();
+    desk.learn_doubts();
+    let right = desk.estimate(&[&["--json"], &MASKS[..]].concat());
+    assert_eq!((right.code, right.err.as_str()), (Some(0), ""));
+    let right: Value = serde_json::from_str(&right.out).unwrap();
+    assert!(right["views"][0]["overlap"].as_f64().unwrap() > 0.8);
+    let mut inverted = desk.open("top-mask.png");
+    inverted.invert();
+    desk.save("inverted.png", &inverted);
+    let outcome = desk.estimate(&["--json", "--mask", "side-mask.png", "inverted.png"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    assert!(outcome.err.contains("camera 'top': the mask looks inverted"), "{}", outcome.err);
+    let report: Value = serde_json::from_str(&outcome.out).unwrap();
+    let doubt = report["doubts"].as_array().unwrap().iter();
+    let mut inverted = doubt.filter(|doubt| doubt["cause"] == "inverted_mask");
+    assert_eq!(inverted.next().unwrap()["view"], "top");
+}

@@ -104,7 +104,7 @@ fn an_overlay_that_cannot_be_written_is_a_doubt() {
     assert!(outcome.err.contains("there is no overlay: writing /dev/full"), "{}", outcome.err);
     let result: serde_json::Value = serde_json::from_str(&outcome.out).unwrap();
     let doubts = result["doubts"].as_array().unwrap();
-    assert!(doubts.iter().any(|doubt| doubt.as_str().unwrap().contains("there is no overlay")));
+    assert!(doubts.iter().any(|doubt| doubt["cause"] == "no_overlay"));
 }
 
 #[cfg(unix)]

@@ -62,3 +62,36 @@ fn too_few_frames_are_refused_and_nothing_is_written() {
     assert!(refused.err.contains("1 frames can be used; at least 3"), "{}", refused.err);
     assert!(!desk.path("me.toml").exists());
 }
+
+#[test]
+fn copies_of_one_frame_are_refused_and_nothing_is_written() {
+    let desk = Desk::new();
+    for frame in 0..12 {
+        desk.draw_frame("frames", &format!("{frame}.png"), 0.3);
+    }
+    let arguments = ["calibrate-hand", "--model", "model", "--frames", "frames", "--mask"];
+    let refused = run(desk.folder(), arguments.iter().chain(&["--out", "me.toml"]));
+    assert_eq!(refused.code, Some(2));
+    let reason = "the 12 frames show 1 different postures; at least 3";
+    assert!(refused.err.contains(reason), "{}", refused.err);
+    assert!(!desk.path("me.toml").exists());
+}
+
+#[test]
+fn a_hand_before_exchanged_cameras_is_refused_by_name() {
+    let desk = Desk::new();
+    desk.learn_doubts();
+    for frame in 0..6 {
+        desk.draw_frame("frames", &format!("{frame}.png"), 0.18 * f64::from(frame));
+    }
+    let [side, top] = CAMERAS.map(|camera| desk.path("frames").join(camera));
+    std::fs::rename(&side, desk.path("other")).unwrap();
+    std::fs::rename(&top, &side).unwrap();
+    std::fs::rename(desk.path("other"), &top).unwrap();
+    let arguments = ["calibrate-hand", "--model", "model", "--frames", "frames", "--mask"];
+    let refused = run(desk.folder(), arguments.iter().chain(&["--out", "me.toml"]));
+    assert_eq!(refused.code, Some(2), "{}", refused.err);
+    let reason = "frames are doubted: camera 'side': it shows what camera 'top' should see";
+    assert!(refused.err.contains(reason), "{}", refused.err);
+    assert!(!desk.path("me.toml").exists());
+}

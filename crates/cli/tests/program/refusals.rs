@@ -215,7 +215,7 @@ fn models_that_are_none() {
     desk.refuses_model(&corrupt, &["corrupt: checksum"]);
     let mut newer = model;
     newer[8] = 9;
-    desk.refuses_model(&newer, &["the model has format 9; this version reads format 7"]);
+    desk.refuses_model(&newer, &["the model has format 9; this version reads format 8"]);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Evaluations on drawn hands.
 
 pub(crate) mod ablation;
+pub(crate) mod doubts;
 pub(crate) mod global_pose;
 pub(crate) mod held_out;
 pub(crate) mod hypotheses;

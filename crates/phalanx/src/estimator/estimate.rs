@@ -3,17 +3,23 @@
 use glam::DVec3;
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
-use phalanx_rvm::ResidualKde;
+use phalanx_refine::PosePrior;
 use phalanx_segmentation::{Mask, Silhouette};
 
+use crate::checking::doubt::ViewDoubt;
+use crate::checking::quick_fit::QuickFit;
+use crate::checking::usual::Explanation;
+use crate::checking::{doubts, redraw};
 use crate::error::{Error, Result};
+use crate::estimator::error_model::ErrorModel;
 use crate::estimator::observation::{Observation, ObservedView};
+use crate::estimator::placement::{PlacementErrors, place};
 use crate::estimator::regression::FittedRegressor;
 use crate::features::describer::OrientationRule;
 use crate::features::descriptor;
 use crate::features::descriptor::Descriptor;
-use crate::global_pose::place;
 use crate::images::picture::Picture;
+use crate::synthesis::postures;
 use crate::window::{Framing, WindowFinder};
 
 /// A pose estimator for one rig and one hand; see [`Training`](crate::Training) for how to get
@@ -24,7 +30,7 @@ pub struct Estimator {
     hand: HandShape,
     descriptor: Descriptor,
     regression: FittedRegressor,
-    errors: Option<ResidualKde>,
+    errors: Option<ErrorModel>,
 }
 
 /// What is known of a hand after looking at it.
@@ -39,6 +45,12 @@ pub struct Estimate {
     pub joints: [DVec3; JOINTS],
     /// What was seen.
     pub observation: Observation,
+    /// How well the hand, drawn again, and what each view shows agree: intersection over union, 0 to 1.
+    /// None where silhouettes were given without the windows that they are seen in.
+    pub overlaps: Vec<f64>,
+    /// Why the answer may be wrong. An estimator that has not
+    /// [learnt how it errs](Estimator::fit_error_model) does not know which overlaps are usual.
+    pub doubts: Vec<ViewDoubt>,
 }
 
 /// Memory that one estimate after another uses again. It holds nothing to be read.
@@ -79,12 +91,19 @@ impl Estimator {
     /// The same estimator, knowing how its estimates err.
     ///
     /// # Errors
-    /// Errors of something other than poses.
-    pub fn with_error_model(self, errors: ResidualKde) -> Result<Self> {
-        let (found, expected) = (errors.outputs(), Dof::COUNT);
-        if found != expected {
-            return Err(Error::Mismatch { part: "numbers in its errors", found, expected });
+    /// Errors of something other than poses, of another number of views, or of another framing.
+    pub fn with_error_model(self, errors: ErrorModel) -> Result<Self> {
+        let placed = usize::from(self.framing() == Framing::Window);
+        for (part, found, expected) in [
+            ("numbers in its errors", errors.residuals.outputs(), Dof::COUNT),
+            ("errors of where hands are", errors.placement.iter().len(), placed),
+        ] {
+            if found != expected {
+                return Err(Error::Mismatch { part, found, expected });
+            }
         }
+        errors.usual.check(self.rig.cameras.len())?;
+        errors.placement.iter().try_for_each(PlacementErrors::check)?;
         Ok(Self { errors: Some(errors), ..self })
     }
 
@@ -119,7 +138,7 @@ impl Estimator {
     }
 
     /// How its estimates err, if it has [learnt it](Self::fit_error_model).
-    pub fn error_model(&self) -> Option<&ResidualKde> {
+    pub fn error_model(&self) -> Option<&ErrorModel> {
         self.errors.as_ref()
     }
 
@@ -219,11 +238,45 @@ impl Estimator {
         self.descriptor.describe(&self.rig, observation.silhouettes(), description, x)?;
         let (pose, std) = self.regress(workspace)?;
         let joints = self.hand.pose(&pose, &self.rig.volume.rest_frame()).joints;
-        let estimate = Estimate { pose, std, joints, observation };
-        match estimate.observation.framing() {
-            Framing::Picture => Ok(estimate),
-            Framing::Window => place(&self.rig, &self.hand, estimate),
+        let (overlaps, doubts) = (Vec::new(), Vec::new());
+        let estimate = Estimate { pose, std, joints, observation, overlaps, doubts };
+        let estimate = match estimate.observation.framing() {
+            Framing::Picture => estimate,
+            Framing::Window => place(&self.rig, &self.hand, &self.placement_errors(), estimate)?,
+        };
+        self.checked(&self.hand, estimate)
+    }
+
+    /// An estimate of a hand with what it has in common with what was seen, and with the doubts that follow.
+    pub(crate) fn checked(&self, hand: &HandShape, mut estimate: Estimate) -> Result<Estimate> {
+        let Estimate { pose, observation, .. } = &estimate;
+        let mut short = Vec::new();
+        if observation.framing() == self.framing() {
+            let (cameras, rest) = (&self.rig.cameras, self.rig.volume.rest_frame());
+            estimate.overlaps = redraw::overlaps(cameras, hand, &rest, pose, observation)?;
+            if let Some(errors) = &self.errors {
+                short = errors.usual.short(&self.explanation(hand, &estimate)?);
+            }
         }
+        estimate.doubts = doubts::of(&self.rig, &short, &estimate);
+        Ok(estimate)
+    }
+
+    /// How well an estimate of a hand explains what was seen.
+    pub(crate) fn explanation(&self, hand: &HandShape, estimate: &Estimate) -> Result<Explanation> {
+        let Estimate { pose, std, observation, overlaps, .. } = estimate;
+        let rest = self.rig.volume.rest_frame();
+        let std = std.map(Option::unwrap_or_default);
+        let prior = PosePrior::independent(*pose, &std)?.product(postures::coupled())?;
+        let fit = QuickFit::new(&self.rig.cameras, rest, observation);
+        let fitted = fit.best(hand, &[*prior.mean()], &prior)?;
+        let borders = fitted.map_or_else(|| vec![0.0; overlaps.len()], |fitted| fitted.borders);
+        Ok(Explanation { overlaps: overlaps.clone(), borders })
+    }
+
+    fn placement_errors(&self) -> PlacementErrors {
+        let learnt = self.errors.as_ref().and_then(|errors| errors.placement);
+        learnt.unwrap_or_else(|| PlacementErrors::of_anywhere(&self.rig.volume))
     }
 
     fn camera(&self, view: usize) -> String {

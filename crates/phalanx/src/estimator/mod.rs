@@ -5,4 +5,5 @@ pub(crate) mod error_model;
 pub(crate) mod estimate;
 pub(crate) mod model_file;
 pub(crate) mod observation;
+pub(crate) mod placement;
 pub(crate) mod regression;

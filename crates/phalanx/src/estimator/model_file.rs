@@ -7,13 +7,16 @@ use phalanx_hand::HandShape;
 use phalanx_rvm::{GroupedRegressor, Model, ModelParts, PcaMlp, ResidualKde, ResidualKdeParts};
 use serde::{Deserialize, Serialize};
 
+use crate::checking::usual::UsualExplanation;
 use crate::error::Result;
 use crate::estimator::container::Container;
+use crate::estimator::error_model::ErrorModel;
 use crate::estimator::estimate::Estimator;
+use crate::estimator::placement::PlacementErrors;
 use crate::estimator::regression::FittedRegressor;
 use crate::features::descriptor::Descriptor;
 
-const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 7 };
+const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 8 };
 
 /// What the payload holds.
 #[derive(Serialize, Deserialize)]
@@ -22,7 +25,25 @@ struct Payload<'a> {
     hand: Cow<'a, HandShape>,
     descriptor: Cow<'a, Descriptor>,
     regression: Stored<'a>,
-    errors: Option<Cow<'a, ResidualKdeParts>>,
+    errors: Option<StoredErrors<'a>>,
+}
+
+/// A model of errors in plain numbers.
+#[derive(Serialize, Deserialize)]
+struct StoredErrors<'a> {
+    residuals: Cow<'a, ResidualKdeParts>,
+    usual: Cow<'a, UsualExplanation>,
+    placement: Option<PlacementErrors>,
+}
+
+impl StoredErrors<'_> {
+    fn read(self) -> Result<ErrorModel> {
+        Ok(ErrorModel {
+            residuals: ResidualKde::from_parts(self.residuals.into_owned())?,
+            usual: self.usual.into_owned(),
+            placement: self.placement,
+        })
+    }
 }
 
 /// A regression in plain numbers.
@@ -48,7 +69,11 @@ impl Estimator {
                 FittedRegressor::Projected(models) => Stored::Projected(Cow::Borrowed(models)),
                 FittedRegressor::Network(own) => Stored::Network(Cow::Borrowed(own)),
             },
-            errors: self.error_model().map(|errors| Cow::Borrowed(errors.parts())),
+            errors: self.error_model().map(|errors| StoredErrors {
+                residuals: Cow::Borrowed(errors.residuals.parts()),
+                usual: Cow::Borrowed(&errors.usual),
+                placement: errors.placement,
+            }),
         };
         MODEL.encode(&payload)
     }
@@ -68,7 +93,7 @@ impl Estimator {
         let (rig, hand) = (rig.into_owned(), hand.into_owned());
         let estimator = Self::from_parts(rig, hand, descriptor.into_owned(), regression)?;
         match errors {
-            Some(parts) => estimator.with_error_model(ResidualKde::from_parts(parts.into_owned())?),
+            Some(errors) => estimator.with_error_model(errors.read()?),
             None => Ok(estimator),
         }
     }

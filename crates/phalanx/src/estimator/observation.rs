@@ -1,7 +1,11 @@
 //! What the cameras showed of a hand.
 
+use phalanx_camera::Camera;
+use phalanx_refine::SilhouetteObservation;
 use phalanx_segmentation::{Forearm, Silhouette};
 
+use crate::error::Result;
+use crate::features::describer::working_camera;
 use crate::window::{Framing, Window};
 
 /// What was seen of a hand, camera by camera in the order of the rig.
@@ -21,6 +25,32 @@ pub struct ObservedView {
     pub window: Option<Window>,
     /// Width and height of the picture, px; those of the silhouette if no picture was given.
     pub picture: (u32, u32),
+}
+
+impl ObservedView {
+    /// The camera whose whole picture the silhouette is, of a view of this camera of the rig.
+    ///
+    /// # Errors
+    /// A camera without a window of the working size's shape.
+    pub fn seeing(&self, camera: &Camera) -> Result<Camera> {
+        if let Some(window) = &self.window {
+            return Ok(window.camera.clone());
+        }
+        let camera = working_camera(camera)?;
+        let (width, height) = self.silhouette.mask.dimensions();
+        Ok(camera.with_intrinsics(camera.intrinsics.resized(width, height)))
+    }
+
+    /// What the silhouette tells of the pose.
+    ///
+    /// # Errors
+    /// A silhouette without a border, or a camera as of [`seeing`](Self::seeing).
+    pub fn evidence(&self, camera: &Camera) -> Result<SilhouetteObservation> {
+        match &self.window {
+            Some(window) => window.evidence(&self.silhouette),
+            None => Ok(SilhouetteObservation::new(&self.seeing(camera)?, &self.silhouette.mask)?),
+        }
+    }
 }
 
 impl Observation {

@@ -153,7 +153,7 @@ pub fn describe_scenes(
     let drawing = SceneDescriber::new(rig, descriptor.view_config)?;
     let describe = |(drawing, memory): &mut (SceneDescriber, Memory), &pose: &usize| {
         let mut x = Vec::new();
-        let described = drawing.see(&scenes.scene(pose)).and_then(|()| {
+        let described = drawing.see(&scenes.scene(pose)).and_then(|_| {
             descriptor.describe(rig, drawing.seen(), memory, &mut x)?;
             Ok(x)
         });

@@ -24,6 +24,19 @@ impl Picture<'_> {
         }
     }
 
+    /// Whether it is a mask and looks inverted: more of its border is hand than not.
+    pub fn looks_inverted(&self) -> bool {
+        let Self::Mask(mask) = self else { return false };
+        let (width, height) = mask.dimensions();
+        let is_border = |x: u32, y: u32| x == 0 || y == 0 || x + 1 == width || y + 1 == height;
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let border = pixels.filter(|&(x, y)| is_border(x, y));
+        let (hand, all) = border.fold((0_usize, 0_usize), |(hand, all), (x, y)| {
+            (hand + usize::from(mask.is_hand(x, y)), all + 1)
+        });
+        2 * hand > all
+    }
+
     /// The raw mask, as large as the picture.
     pub(crate) fn mask(&self) -> Result<Mask, phalanx_segmentation::Error> {
         match self {

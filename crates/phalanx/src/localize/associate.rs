@@ -4,7 +4,7 @@ use glam::DVec3;
 use phalanx_camera::{Ray, triangulate};
 
 use super::Detections;
-use crate::sighting::{Sighting, arm};
+use crate::localize::sighting::{Sighting, arm};
 
 /// A hand in space: where its wrist is, and which way its arm points.
 #[derive(Debug, Clone, PartialEq)]

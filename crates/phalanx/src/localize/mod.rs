@@ -5,6 +5,8 @@ mod associate;
 mod crop;
 mod detect;
 pub(crate) mod exits;
+pub(crate) mod global_pose;
+pub(crate) mod sighting;
 
 pub use arm::Arm;
 pub use associate::{Placement, associate};

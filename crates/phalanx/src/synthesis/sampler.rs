@@ -14,7 +14,7 @@ use crate::window::Framing;
 
 /// How far the arm of a hand anywhere leans in θ_X and in θ_Y, degrees: a person who sits or stands
 /// before the cameras and reaches for the middle of the volume.
-const LEAN_DEG: f64 = 30.0;
+pub(crate) const LEAN_DEG: f64 = 30.0;
 
 /// How far wrists bend that are not kept straight, degrees: about half of what they can.
 const WRIST_DEG: [(Dof, [f64; 2]); 2] =

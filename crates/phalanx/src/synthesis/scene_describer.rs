@@ -8,13 +8,14 @@ use phalanx_segmentation::{Mask, Silhouette};
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
+use crate::estimator::observation::Observation;
 use crate::features::describer::{Describer, ViewConfig, working_camera};
 use crate::images::picture::Picture;
 use crate::progress::Progress;
 use crate::synthesis::augmentation::make_ragged;
 use crate::synthesis::scene::{Scene, SceneSource, SceneView};
 use crate::window::Framing;
-use crate::window::{DrawnView, DrawnWindows};
+use crate::window::{DrawnView, DrawnWindows, Window};
 
 /// The shape contexts of one pose: for each camera, its contour points' histograms one after the
 /// other.
@@ -147,7 +148,20 @@ impl SceneDescriber {
         Ok(&self.drawn)
     }
 
-    pub(crate) fn see(&mut self, scene: &Scene) -> Result<()> {
+    /// The scene as an estimator observes it.
+    ///
+    /// # Errors
+    /// Another number of views than cameras, or one that cannot be seen.
+    pub fn observation(&mut self, scene: &Scene) -> Result<Observation> {
+        let windows = self.see(scene)?;
+        Ok(match self.view_config.framing {
+            Framing::Picture => Observation::of_silhouettes(&self.silhouettes),
+            Framing::Window => Observation::through_windows(&self.silhouettes, &windows),
+        })
+    }
+
+    /// Sees a scene; returns the windows that it is seen through, if it is.
+    pub(crate) fn see(&mut self, scene: &Scene) -> Result<Vec<Window>> {
         match self.view_config.framing {
             Framing::Picture => {
                 self.draw(scene)?;
@@ -159,6 +173,7 @@ impl SceneDescriber {
                         reason,
                     })?;
                 }
+                Ok(Vec::new())
             }
             Framing::Window => {
                 self.check(scene)?;
@@ -167,10 +182,9 @@ impl SceneDescriber {
                     ragged: view.ragged,
                 };
                 let views: Vec<DrawnView> = scene.views.iter().map(drawn).collect();
-                self.windows.silhouettes(&views, &mut self.silhouettes)?;
+                self.windows.silhouettes(&views, &mut self.silhouettes)
             }
         }
-        Ok(())
     }
 
     fn check(&self, scene: &Scene) -> Result<()> {

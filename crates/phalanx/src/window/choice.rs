@@ -4,7 +4,7 @@ use glam::DVec3;
 use phalanx_camera::{Camera, Ray, triangulate};
 use phalanx_segmentation::HandDetection;
 
-use crate::sighting::{Sighting, arm};
+use crate::localize::sighting::{Sighting, arm};
 
 /// The most things that are considered in each view.
 const MOST: usize = 6;

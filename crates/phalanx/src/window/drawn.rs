@@ -60,7 +60,7 @@ impl DrawnWindows {
         })
     }
 
-    /// The silhouettes of a scene, one for each camera.
+    /// The silhouettes of a scene, one for each camera, and the windows that show them.
     ///
     /// # Errors
     /// A view that cannot be drawn, or shows no hand.
@@ -68,7 +68,7 @@ impl DrawnWindows {
         &mut self,
         views: &[DrawnView],
         silhouettes: &mut [Silhouette],
-    ) -> Result<()> {
+    ) -> Result<Vec<Window>> {
         let windows = self.find(views)?;
         let shown = windows.iter().zip(views).zip(silhouettes).enumerate();
         for (number, ((window, view), silhouette)) in shown {
@@ -77,7 +77,7 @@ impl DrawnWindows {
                 .silhouette_of_mask(&seen, silhouette)
                 .map_err(|reason| no_silhouette(&window.camera, reason))?;
         }
-        Ok(())
+        Ok(windows)
     }
 
     /// The windows onto the pictures of the cameras, found in small ones.

@@ -103,8 +103,8 @@ fn other_files_and_formats_are_refused_by_name() {
         assert_eq!(message(foreign), "not a phalanx model: the file does not begin with its mark");
     }
     let mut newer = bytes();
-    newer[8..12].copy_from_slice(&8_u32.to_le_bytes());
-    let expected = "the model has format 8; this version reads format 7: train again, or use the \
+    newer[8..12].copy_from_slice(&9_u32.to_le_bytes());
+    let expected = "the model has format 9; this version reads format 8: train again, or use the \
                     version that wrote it";
     assert_eq!(message(&newer), expected);
     let mut endless = bytes();

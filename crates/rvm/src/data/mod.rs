@@ -1,7 +1,6 @@
 //! Training data: checked, scaled, subsampled.
 
 pub(crate) mod check;
-pub(crate) mod permutation;
 pub(crate) mod problem;
 pub(crate) mod scaler;
 pub(crate) mod size;

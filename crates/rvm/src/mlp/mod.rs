@@ -7,12 +7,12 @@ pub(crate) mod pca_mlp;
 mod samples;
 
 use faer::{Mat, MatRef};
+use phalanx_sampling::shuffle;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
 
 use crate::data::check;
-use crate::data::permutation::shuffle;
 use crate::data::scaler::StandardScaler;
 use crate::error::{Error, Result};
 use crate::mlp::adam::Adam;

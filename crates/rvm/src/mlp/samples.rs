@@ -1,9 +1,9 @@
 //! Training samples of a perceptron, and its errors on held-out ones.
 
 use faer::{ColRef, Mat, MatRef};
+use phalanx_sampling::random_subset;
 use rayon::prelude::*;
 
-use crate::data::permutation::random_subset;
 use crate::data::scaler::StandardScaler;
 use crate::error::{Error, Result};
 use crate::mlp::layers::{Layers, Pass};

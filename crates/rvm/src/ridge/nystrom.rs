@@ -1,13 +1,13 @@
 //! Kernel ridge regression with Gaussians on a subset of the samples (Nyström).
 
 use faer::{Mat, MatRef};
+use phalanx_sampling::random_subset;
 
 use crate::basis::kernel::{Bandwidth, Kernel};
 use crate::basis::normal_equations;
 use crate::basis::normal_equations::Equations;
 use crate::basis::spec::BasisSpec;
 use crate::data::check;
-use crate::data::permutation::random_subset;
 use crate::data::problem::Problem;
 use crate::data::size::ProblemSize;
 use crate::error::{Error, Result};

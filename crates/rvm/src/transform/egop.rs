@@ -1,12 +1,12 @@
 //! Distances learned from gradients.
 
 use faer::{Mat, MatRef};
+use phalanx_sampling::random_subset;
 use rayon::prelude::*;
 
 use crate::basis::kernel::{self, Kernel};
 use crate::basis::spec::BasisSpec;
 use crate::data::check;
-use crate::data::permutation::random_subset;
 use crate::data::problem::Problem;
 use crate::data::scaler::StandardScaler;
 use crate::data::size::ProblemSize;

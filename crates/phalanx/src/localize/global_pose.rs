@@ -8,9 +8,9 @@ use glam::{DVec2, DVec3};
 use phalanx_camera::{Rig, triangulate};
 use phalanx_hand::{Dof, HandShape, Pose, Primitive, Side};
 
-use crate::sighting::{Sighting, arm};
+use crate::error::{Error, Result};
+use crate::localize::sighting::{Sighting, arm};
 use crate::window::PicturedHand;
-use crate::{Error, Estimate, ObservedView, Result};
 
 /// A pose whose global part was found from the hands' places in the views.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,30 +19,6 @@ pub struct GlobalStart {
     pub pose: Pose,
     /// Root mean square by which the wrist's rays miss its place, mm; of a single view 0.
     pub miss: f64,
-}
-
-/// What a hand's place in its windows tells.
-pub(crate) const PLACED: [Dof; 5] = [Dof::ThetaX, Dof::ThetaY, Dof::TX, Dof::TY, Dof::TZ];
-
-/// How far off a hand so placed usually is, as `cargo xtask eval-global` finds it: the arm's direction
-/// in each of θ_X and θ_Y, radians, and the wrist along each axis, mm.
-const LEAN_STD: f64 = 0.105;
-const POSITION_STD: f64 = 8.0;
-
-/// An estimate whose hand is put where its windows show it.
-pub(crate) fn place(rig: &Rig, hand: &HandShape, estimate: Estimate) -> Result<Estimate> {
-    let hand_in = |view: &ObservedView| Some(view.window.as_ref()?.pictured_hand());
-    let hands: Vec<Option<PicturedHand>> = estimate.observation.views.iter().map(hand_in).collect();
-    let pose = initial_global(rig, hand, &estimate.pose, &hands)?.pose;
-    let mut std = estimate.std;
-    for dof in [Dof::ThetaX, Dof::ThetaY] {
-        std[dof.index()] = Some(LEAN_STD);
-    }
-    for dof in [Dof::TX, Dof::TY, Dof::TZ] {
-        std[dof.index()] = Some(POSITION_STD);
-    }
-    let joints = hand.pose(&pose, &rig.volume.rest_frame()).joints;
-    Ok(Estimate { pose, std, joints, ..estimate })
 }
 
 /// Places a hand whose fingers and θ_Z are known roughly, as by regression: position from the

@@ -1,4 +1,4 @@
-//! Why no skin is found in a photograph.
+//! Why no hand is found in a picture.
 
 use image::{Rgb, RgbImage};
 use phalanx::{Error, Estimator, Segmenter};
@@ -10,19 +10,21 @@ use crate::segment::Prepared;
 /// rounding makes of a grey one.
 const GREY: u8 = 8;
 
-/// The error of an estimate from photographs. Where no skin was found, it says what the photograph is like.
+/// The error of an estimate from pictures. Where no hand was found, it says what the picture is like.
 pub(crate) fn explained(
     error: Error,
     estimator: &Estimator,
     pictures: &[Prepared<'_>],
 ) -> anyhow::Error {
-    let Error::Silhouette { camera, reason: Reason::EmptyMask { .. } } = &error else {
-        return error.into();
-    };
+    let Error::Silhouette { camera, reason } = &error else { return error.into() };
     let mut views = estimator.rig().cameras.iter().zip(pictures);
-    match views.find(|(seeing, _)| seeing.name == *camera) {
-        Some((_, Prepared::Photograph(photograph, Segmenter::Skin(_)))) => {
-            anyhow::anyhow!("{error}; {}", cause(photograph))
+    match (views.find(|(seeing, _)| seeing.name == *camera), reason) {
+        (
+            Some((_, Prepared::Photograph(photograph, Segmenter::Skin(_)))),
+            Reason::EmptyMask { .. },
+        ) => anyhow::anyhow!("{error}; {}", cause(photograph)),
+        (Some((_, picture)), _) if picture.as_picture().looks_inverted() => {
+            anyhow::anyhow!("{error}; the mask looks inverted: hand should be white")
         }
         _ => error.into(),
     }

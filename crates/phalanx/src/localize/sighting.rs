@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use phalanx_camera::{Camera, Ray};
 use phalanx_segmentation::HandDetection;
 
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// A hand in one camera's picture.
 #[derive(Clone, Copy)]

@@ -1,4 +1,4 @@
-//! Random subsets of ordered lists.
+#![doc = include_str!("../README.md")]
 
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -11,7 +11,7 @@ use rand_pcg::Pcg64Mcg;
 /// The subset depends on `seed` alone. With the same seed a smaller subset is part of a larger one.
 ///
 /// ```
-/// use phalanx_rvm::random_subset;
+/// use phalanx_sampling::random_subset;
 ///
 /// let some = random_subset(1000, 10, 7);
 /// assert!(some.len() == 10 && some.is_sorted() && some[9] < 1000);
@@ -26,7 +26,7 @@ pub fn random_subset(all: usize, count: usize, seed: u64) -> Vec<usize> {
 }
 
 /// Puts a list into a random order (Fisher and Yates).
-pub(crate) fn shuffle(order: &mut [usize], random: &mut Pcg64Mcg) {
+pub fn shuffle(order: &mut [usize], random: &mut impl Rng) {
     for last in (1..order.len()).rev() {
         // The bias of so short a range in 64 bits is negligible.
         let other = (u128::from(random.next_u64()) * (last as u128 + 1)) >> 64;
