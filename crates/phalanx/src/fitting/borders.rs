@@ -36,6 +36,12 @@ pub(super) fn weights(borders: &[Option<BoundaryNoise>], noise: f64) -> Vec<f64>
     borders.iter().map(|border| border.as_ref().map_or(1.0, weight)).collect()
 }
 
+/// Which share of the borders' variance is the same in every frame, over all views.
+pub(super) fn persistent(borders: &[Option<BoundaryNoise>]) -> f64 {
+    let seen: Vec<f64> = borders.iter().flatten().map(|border| border.persistent).collect();
+    seen.iter().sum::<f64>() / seen.len().max(1) as f64
+}
+
 /// The same beside the best view. Poses are fitted with these: the prior of postures is a normal
 /// distribution in place of one with two peaks, straight and folded, and pulls every finger between them
 /// when it counts as much as borders that err together.

@@ -6,6 +6,7 @@
 
 mod borders;
 mod consensus;
+mod flesh;
 mod frame_fit;
 mod misfit;
 mod motion;

@@ -36,16 +36,25 @@ impl KnownHand {
     }
 }
 
+/// What borders tell of a hand's proportions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HandEvidence {
+    /// How many independent places one of the best view's border counts for.
+    pub(super) independent: f64,
+    /// Which share of a border's variance is the same in every frame.
+    pub(super) persistent: f64,
+}
+
 /// The hand learnt from half of some frames, beginning with the mean hand, if frames of the other half
 /// then fit better than with the hand that they were fitted with; else `None`. Frames whose views contradict
-/// their poses tell nothing. A place of the best view's border tells as much as `independent` places that err
-/// alone, which says how well the hand is known.
+/// their poses tell nothing. A place of the best view's border tells as much as `border.independent` places that err
+/// alone, and all frames as much as those would that do not err as others do: so well is the hand known.
 pub(super) fn learn(
     mean: &HandShape,
     fitter: &FrameFitter<'_>,
     found: &[Option<Found>],
     rest: &DAffine3,
-    independent: f64,
+    border: HandEvidence,
 ) -> Result<Option<KnownHand>> {
     let found: Vec<&Found> = found.iter().flatten().collect();
     let frame = |found: &Found| {
@@ -83,10 +92,12 @@ pub(super) fn learn(
     };
     let fits_better = energy(&calibrated.hand)? < energy(fitter.hand)?;
     let std = KnownHand::anyone(mean).std.into_iter().zip(&calibrated.hand_std);
+    let frames = seen.len() as f64;
+    let independent = border.independent.min(1.0) / (1.0 + (frames - 1.0) * border.persistent);
     // What the frames tell beside what is known of anyone's hand, as they err together.
     let honest = |(anyone, fitted): (f64, &f64)| {
         let told = fitted.powi(-2) - anyone.powi(-2);
-        (independent.min(1.0) * told.max(0.0) + anyone.powi(-2)).powf(-0.5)
+        (independent * told.max(0.0) + anyone.powi(-2)).powf(-0.5)
     };
     let std = std.map(honest).collect();
     Ok(fits_better.then_some(KnownHand { shape: calibrated.hand, std }))

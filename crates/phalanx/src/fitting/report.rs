@@ -5,6 +5,7 @@ use phalanx_camera::Camera;
 use phalanx_hand::{Dof, JOINTS, Pose};
 use phalanx_refine::{Agreement, Posterior};
 
+use super::flesh;
 use super::frame_fit::{Found, FrameFitter};
 use super::misfit;
 use super::proportions::KnownHand;
@@ -20,7 +21,8 @@ pub struct FrameFit {
     pub std: [f64; Dof::COUNT],
     /// The 21 joints in the world, mm.
     pub joints: [DVec3; JOINTS],
-    /// Root mean square distance of each joint from where it is said to be, mm.
+    /// Root mean square distance of each joint from where it is said to be, mm: what views and hand leave
+    /// open, and that a joint may lie anywhere in the flesh about it, which no silhouette tells.
     pub joint_std: [f64; JOINTS],
     /// What became of each view, in the order of the cameras.
     pub views: Vec<ViewFit>,
@@ -113,11 +115,12 @@ impl Reporter<'_> {
             }
         }
         doubts.extend(self.cut_off(found, &views, &joints));
+        let flesh = flesh::joint_std_mm(hand);
         Ok(FrameFit {
             pose,
             std: posterior.std,
             joints,
-            joint_std: posterior.joints,
+            joint_std: std::array::from_fn(|joint| posterior.joints[joint].hypot(flesh[joint])),
             views,
             doubts,
             converged: found.refined.converged,

@@ -12,7 +12,7 @@ use super::consensus::{self, VolumeEstimate};
 use super::frame_fit::{Found, FrameFitter, Postures};
 use super::observation::{Sight, fitted_hand};
 use super::passes;
-use super::proportions::{self, KnownHand};
+use super::proportions::{self, HandEvidence, KnownHand};
 use super::report::{FrameFit, Reporter};
 use super::starts;
 use super::views;
@@ -104,8 +104,7 @@ pub fn fit_take(
     if settings.proportions == Proportions::FromTake {
         for round in 0..ROUNDS {
             let fitter = take.fitter(Weights::Relative);
-            let independent = take.weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-            let learnt = proportions::learn(&take.mean, &fitter, &found, &middle, independent)?;
+            let learnt = proportions::learn(&take.mean, &fitter, &found, &middle, take.border())?;
             let Some(learnt) = learnt else { break };
             take.hand = learnt;
             let fitter = take.fitter(Weights::Relative);
@@ -157,6 +156,8 @@ struct Take<'a> {
     mean: HandShape,
     hand: KnownHand,
     weights: Vec<f64>,
+    /// Which share of the borders' variance is the same in every frame.
+    persistent: f64,
 }
 
 /// Which weights views are fitted with.
@@ -177,7 +178,8 @@ impl<'a> Take<'a> {
     ) -> Self {
         let mean = fitted_hand(hand);
         let hand = KnownHand::anyone(&mean);
-        Self { cameras, prior, refinement, mean, hand, weights: vec![1.0; cameras.len()] }
+        let weights = vec![1.0; cameras.len()];
+        Self { cameras, prior, refinement, mean, hand, weights, persistent: 0.0 }
     }
 
     fn fitter(&self, weights: Weights) -> FrameFitter<'_> {
@@ -193,7 +195,14 @@ impl<'a> Take<'a> {
     fn weigh(&mut self, found: &[Option<Found>]) -> Result<()> {
         let borders = borders::border_noise(&self.fitter(Weights::Absolute), found)?;
         self.weights = borders::weights(&borders, self.refinement.noise);
+        self.persistent = borders::persistent(&borders);
         Ok(())
+    }
+
+    /// What borders tell of the hand's proportions.
+    fn border(&self) -> HandEvidence {
+        let independent = self.weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        HandEvidence { independent, persistent: self.persistent }
     }
 
     /// The report of every frame.
