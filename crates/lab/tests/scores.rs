@@ -121,7 +121,7 @@ fn row(answer: impl Fn(usize) -> anyhow::Result<Found>) -> Row {
     let frames = take.frames(&[0, 1], Input::Masks);
     assert_eq!(frames.len(), FRAMES);
     let (views, input, spoil) = (&[0, 1], Input::Masks, None);
-    let sequence = Sequence { take: &take, views, input, frames: &frames, spoil };
+    let sequence = Sequence { take: &take, views, input, frames: &frames, spoil, lose: None };
     let outcome = |frame| Outcome { found: answer(frame), cpu_ms: Some(frame as f64) };
     let outcomes: Vec<Outcome> = (0..FRAMES).map(outcome).collect();
     let scores = Scorer::new(&reference).frames(&sequence, &outcomes).unwrap();

@@ -33,6 +33,16 @@ pub enum Error {
     /// No camera sees anything like a hand, in any frame.
     #[error("no camera sees anything like a hand; are the masks of a hand, over 127?")]
     NoHand,
+    /// A frame that does not come after the one before it.
+    #[error(
+        "a frame of {time} s comes after one of {before} s; frames are tracked in the order of time"
+    )]
+    FrameTime {
+        /// Its time, seconds.
+        time: f64,
+        /// The time of the frame before it.
+        before: f64,
+    },
     /// A hand that would be behind a camera that sees it.
     #[error("camera '{camera}': the hand would be behind it")]
     BehindCamera {

@@ -31,8 +31,9 @@ pub use features::describer::{
 };
 pub use features::descriptor::{Descriptor, ExtraFeatures, describe_scenes};
 pub use fitting::{
-    FitDoubt, FrameFit, Missing, Proportions, TakeFit, TakeFrame, TakeSettings, ViewFit,
-    VolumeEstimate, estimate_volume, fit_frame, fit_take,
+    Delay, FitDoubt, FrameFit, Missing, Proportions, TakeFit, TakeFrame, TakeSettings,
+    TrackSettings, TrackedFrame, Tracker, ViewFit, VolumeEstimate, estimate_volume, fit_frame,
+    fit_take,
 };
 pub use images::decode::decode_picture;
 pub use images::overlay::{draw_overlay, draw_window_overlay, working_window};

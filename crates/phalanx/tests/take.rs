@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 use phalanx::{
-    Error, FitDoubt, ItemRng, Missing, NoProgress, TakeFrame, TakeSettings, estimate_volume,
-    fit_frame, fit_take,
+    Delay, Error, FitDoubt, ItemRng, Missing, NoProgress, Proportions, TakeFrame, TakeSettings,
+    TrackSettings, TrackedFrame, Tracker, estimate_volume, fit_frame, fit_take,
 };
 use phalanx_camera::{Camera, Extrinsics, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose, Side};
@@ -191,4 +191,64 @@ fn a_take_without_a_hand_is_an_error() {
     let short = TakeFrame { masks: vec![None] };
     let volume = estimate_volume(&cameras, &[short], &HandShape::adult());
     assert!(matches!(volume, Err(Error::PictureCount { .. })));
+}
+
+fn track(cameras: &[Camera], frames: &[TakeFrame], delay: Delay) -> Vec<TrackedFrame> {
+    let settings = TrackSettings { hand: hand(), proportions: Proportions::Given, delay };
+    let mut tracker = Tracker::new(cameras, &settings).expect("a hand");
+    let mut tracked = Vec::new();
+    for (k, frame) in frames.iter().enumerate() {
+        let due = tracker.push(k as f64 / 30.0, frame).expect("a frame");
+        assert_eq!(due.is_some(), delay == Delay::None || k > 0, "{k}");
+        tracked.extend(due);
+    }
+    tracked.extend(tracker.finish().expect("a frame"));
+    tracked
+}
+
+#[test]
+fn a_hand_is_tracked_frame_by_frame() {
+    let Drawn { cameras, frames, joints } = drawn(8);
+    for delay in [Delay::None, Delay::OneFrame] {
+        let tracked = track(&cameras, &frames, delay);
+        assert_eq!(tracked.len(), frames.len());
+        for (k, (frame, truth)) in tracked.iter().zip(&joints).enumerate() {
+            assert!((frame.time - k as f64 / 30.0).abs() < 1e-12);
+            let error = mean_error(&frame.fit.as_ref().expect("a hand").joints, truth);
+            assert!(error < 8.0, "{delay:?}, frame {k}: {error} mm");
+        }
+        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+        assert_eq!(alone.install(|| track(&cameras, &frames, delay)), tracked);
+    }
+}
+
+#[test]
+fn a_camera_that_is_lost_makes_poses_less_certain_and_none_makes_them_unseen() {
+    let Drawn { cameras, mut frames, joints } = drawn(9);
+    frames[4].masks[0] = None;
+    frames[6].masks.fill(None);
+    let tracked = track(&cameras, &frames, Delay::None);
+    let fit = |k: usize| tracked[k].fit.as_ref().expect("a hand");
+    let spread = |k: usize| fit(k).joint_std.iter().sum::<f64>();
+    assert!(spread(4) > spread(3) && spread(4) > spread(5), "{:?}", [3, 4, 5].map(spread));
+    assert!(mean_error(&fit(4).joints, &joints[4]) < 10.0);
+    assert_eq!(fit(6).doubts, [FitDoubt::NotSeen]);
+    assert!(fit(6).joint_std.iter().all(|std| std.is_infinite()));
+    for k in [7, 8] {
+        let error = mean_error(&fit(k).joints, &joints[k]);
+        assert!(error < 8.0, "frame {k} after the hand was lost: {error} mm");
+    }
+}
+
+#[test]
+fn a_hand_that_has_not_been_seen_yet_has_no_pose_and_time_goes_on() {
+    let Drawn { cameras, frames, .. } = drawn(1);
+    let mut tracker = Tracker::new(&cameras, &TrackSettings::default()).expect("a hand");
+    let nothing = TakeFrame { masks: vec![None; cameras.len()] };
+    assert_eq!(tracker.push(0.0, &nothing).expect("a frame"), None);
+    let first = tracker.push(0.1, &frames[0]).expect("a frame").expect("the one before");
+    assert_eq!(first, TrackedFrame { time: 0.0, fit: None });
+    assert!(tracker.world_from_hand().is_some());
+    let error = tracker.push(0.1, &frames[0]).expect_err("no time has passed");
+    assert!(matches!(error, Error::FrameTime { .. }), "{error}");
 }

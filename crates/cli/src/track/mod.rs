@@ -8,13 +8,12 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use phalanx::{
-    FrameFit, Progress, Proportions, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take,
+    Delay, FrameFit, Progress, Proportions, TakeFit, TakeSettings, TrackedFrame, Tracker, fit_take,
 };
 use phalanx_camera::Camera;
 use phalanx_cli::files::Output;
 use phalanx_hand::{HandShape, Side};
 use phalanx_io::take::Take;
-use rayon::prelude::*;
 
 use crate::progress::Bar;
 use crate::recording::reader::Reader;
@@ -25,11 +24,8 @@ use crate::side::SideName;
 use crate::{input, take_file};
 
 /// Recordings of up to so many moments are fitted as a whole. Of longer ones as many moments, evenly spread,
-/// tell the hand, and then every frame is fitted with it, so that memory does not grow with the recording.
+/// tell the hand, and then it is tracked from frame to frame, so that no more pictures are held at a time.
 const WHOLE: usize = 240;
-
-/// Frames that are fitted at a time, each on its own.
-const BLOCK: usize = 32;
 
 /// The rate that is assumed where frames have no times, Hz.
 const USUAL_RATE: f64 = 30.0;
@@ -50,6 +46,10 @@ pub(crate) struct Arguments {
     /// The frame rate of pictures that have no times; 30 Hz by default.
     #[arg(long, value_name = "HZ")]
     rate: Option<f64>,
+    /// Fit all moments together, each in the light of all others, also of a recording of more than 240 moments,
+    /// which is tracked from frame to frame by default; takes memory and some twenty times as long.
+    #[arg(long)]
+    whole_take: bool,
     /// Where the angles go: .csv, .jsonl or .npz by its name, or - for CSV on standard output.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -72,8 +72,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let settings = settings(arguments)?;
     let mut failures = Vec::new();
     let timeline = reader.timeline.clone();
-    let (fit, frames) = fit(&source, reader, &settings, &mut failures)?;
-    let take = written(&source.cameras, &timeline, &fit, &frames, arguments.rate);
+    let times = times(&timeline, arguments.rate);
+    let most = if arguments.whole_take { usize::MAX } else { WHOLE };
+    let (fit, frames) = fit(&source, reader, &settings, (most, &times), &mut failures)?;
+    let take = written(&source.cameras, &timeline, &fit, (&frames, &times), arguments.rate);
     let bytes = take_file::encoded(&take, &kind)?.context("the kind was checked")?;
     out.write(&bytes)?;
     if let Some(out) = hand_out {
@@ -82,40 +84,33 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     conclude(&take, &fit, &arguments.out, &failures)
 }
 
-/// Fits all moments of a recording: the take's hand and volume, and each frame.
+/// Fits all moments of a recording: the take's hand and volume, and each frame; as a whole up to `most`
+/// moments.
 fn fit(
     source: &Source,
     mut reader: Reader<'_>,
     settings: &TakeSettings,
+    (most, times): (usize, &[f64]),
     failures: &mut Vec<String>,
 ) -> Result<(TakeFit, Vec<Option<FrameFit>>)> {
     let (cameras, count) = (&source.cameras, reader.moments().len());
     let bar = Bar::new();
-    let fit = fit_take(cameras, &reader.read_some(WHOLE, failures), settings, &bar)?;
-    if count <= WHOLE {
+    let fit = fit_take(cameras, &reader.read_some(most, failures), settings, &bar)?;
+    if count <= most {
         let frames = fit.frames.iter().cloned().map(Some).collect();
         return Ok((fit, frames));
     }
     failures.clear();
-    let mut frames = Vec::with_capacity(count);
+    let mut tracked: Vec<TrackedFrame> = Vec::with_capacity(count);
     let mut reader = source.reader()?;
-    bar.begin("fit frames", count);
-    for first in (0..count).step_by(BLOCK) {
-        let block = first..count.min(first + BLOCK);
-        let block: Vec<TakeFrame> =
-            block.map(|moment| reader.read_noting(moment, failures)).collect();
-        let fitted = block.par_iter().map(|frame| {
-            let fitted = fit_frame(cameras, frame, &fit);
-            bar.step();
-            match fitted {
-                Ok(frame) => Ok(Some(frame)),
-                Err(phalanx::Error::NoHand) => Ok(None),
-                Err(error) => Err(error),
-            }
-        });
-        frames.extend(fitted.collect::<phalanx::Result<Vec<_>>>()?);
+    let mut tracker = Tracker::of_take(cameras, &fit, Delay::OneFrame)?;
+    bar.begin("track the hand", count);
+    for (moment, &time) in times.iter().enumerate() {
+        tracked.extend(tracker.push(time, &reader.read_noting(moment, failures))?);
+        bar.step();
     }
-    Ok((fit, frames))
+    tracked.extend(tracker.finish()?);
+    Ok((fit, tracked.into_iter().map(|frame| frame.fit).collect()))
 }
 
 fn kind(out: &Path) -> Result<String> {
@@ -160,21 +155,25 @@ fn tell(cameras: &[Camera], timeline: &Timeline) {
     }
 }
 
+/// When each moment was, seconds: by the cameras' clocks or, where they have none, by the rate.
+fn times(timeline: &Timeline, rate: Option<f64>) -> Vec<f64> {
+    let clock: Option<Vec<f64>> = timeline.moments.iter().map(|moment| moment.time).collect();
+    let rate = rate.unwrap_or(USUAL_RATE);
+    clock.unwrap_or_else(|| (0..timeline.moments.len()).map(|k| k as f64 / rate).collect())
+}
+
 fn written(
     cameras: &[Camera],
     timeline: &Timeline,
     fit: &TakeFit,
-    frames: &[Option<FrameFit>],
+    (frames, times): (&[Option<FrameFit>], &[f64]),
     rate: Option<f64>,
 ) -> Take {
     let has_times = timeline.moments.iter().all(|moment| moment.time.is_some());
-    let rate = rate.unwrap_or(USUAL_RATE);
     let frame = |(index, fit): (usize, &Option<FrameFit>)| {
-        let moment = &timeline.moments[index];
-        let time = moment.time.filter(|_| has_times).unwrap_or(index as f64 / rate);
-        take::frame(cameras, (index, moment), time, fit.as_ref())
+        take::frame(cameras, (index, &timeline.moments[index]), times[index], fit.as_ref())
     };
-    let header = take::header(cameras, fit, (!has_times).then_some(rate));
+    let header = take::header(cameras, fit, (!has_times).then(|| rate.unwrap_or(USUAL_RATE)));
     Take { header, frames: frames.iter().enumerate().map(frame).collect() }
 }
 

@@ -13,6 +13,7 @@ use phalanx_hand::{HandShape, JOINTS, Pose, Primitive};
 
 use super::deviation::{PoseCovariance, joint_deviations};
 use super::frame::FrameName;
+use super::lose::Lose;
 use super::reference::Points;
 use super::spoil::Spoil;
 use super::take::{Input, Take};
@@ -33,12 +34,20 @@ pub struct Sequence<'a> {
     pub frames: &'a [FrameName],
     /// Which masks are spoilt, and the landmarks that it takes to do so, camera by camera.
     pub spoil: Option<(&'a Spoil, &'a [Landmarks])>,
+    /// Which camera is lost in some frames.
+    pub lose: Option<&'a Lose>,
 }
 
 impl Sequence<'_> {
     /// The cameras that are used.
     pub fn cameras(&self) -> Vec<Camera> {
         self.take.cameras(self.views)
+    }
+
+    /// Whether the view of a number among those used is lost in the frame of a number.
+    pub fn is_lost(&self, view: usize, number: usize) -> bool {
+        let camera = &self.take.cameras[self.views[view]].camera.name;
+        self.lose.is_some_and(|lose| lose.concerns(camera, number, self.frames.len()))
     }
 
     /// The pictures of the frame of a number, one for each camera.

@@ -9,6 +9,7 @@ use super::method::{Method, Outcome, Sequence};
 use super::product::{Estimated, Product, RefinedFrames};
 use super::reference::Reference;
 use super::take::{Input, Take};
+use super::tracked::{Tracked, Whose};
 use super::whole_take::{Fits, FramesAlone, WholeTake};
 
 /// What may be asked for.
@@ -22,14 +23,25 @@ pub enum MethodName {
     Take,
     /// Each frame alone, with the hand that the whole take told.
     Frame,
+    /// Frame by frame as they come, with the hand that the whole take told.
+    Tracked,
+    /// Frame by frame as they come, the hand learnt on the way.
+    Live,
     /// A detector's landmarks, triangulated: a baseline.
     Landmarks,
 }
 
 impl MethodName {
     /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::Estimate, Self::Refined, Self::Take, Self::Frame, Self::Landmarks];
+    pub const ALL: [Self; 7] = [
+        Self::Estimate,
+        Self::Refined,
+        Self::Take,
+        Self::Frame,
+        Self::Tracked,
+        Self::Live,
+        Self::Landmarks,
+    ];
 
     /// Whether a take's cameras need a trained model for it.
     fn needs_model(self) -> bool {
@@ -42,6 +54,13 @@ impl MethodName {
             Self::Landmarks => &[Input::Photographs],
             _ => &Input::ALL,
         }
+    }
+}
+
+impl MethodName {
+    /// Whether it can do without a camera in some frames.
+    pub fn may_lose_cameras(self) -> bool {
+        matches!(self, Self::Take | Self::Tracked | Self::Live)
     }
 }
 
@@ -74,6 +93,8 @@ impl<'a> Prepared<'a> {
         match name {
             MethodName::Landmarks => Box::new(Landmarks(self.reference)),
             MethodName::Take => Box::new(WholeTake(&self.fits)),
+            MethodName::Tracked => Box::new(self.tracked(Whose::OfTake)),
+            MethodName::Live => Box::new(self.tracked(Whose::Anyone)),
             MethodName::Frame => Box::new(FramesAlone(&self.fits)),
             MethodName::Estimate => {
                 self.trained("estimate", |product| Box::new(Estimated(product)))
@@ -82,6 +103,10 @@ impl<'a> Prepared<'a> {
                 self.trained("refined", |product| Box::new(RefinedFrames(product)))
             }
         }
+    }
+
+    fn tracked(&self, whose: Whose) -> Tracked<'_> {
+        Tracked { fits: &self.fits, whose }
     }
 
     /// A method that needs a model; if there is none, it refuses every frame.

@@ -9,6 +9,7 @@ pub(crate) mod contact_sheet;
 pub mod deviation;
 pub mod frame;
 pub mod landmarks;
+pub mod lose;
 pub mod method;
 pub mod methods;
 pub mod overlap;
@@ -24,6 +25,7 @@ mod statistics;
 mod subsets;
 mod table;
 pub mod take;
+pub mod tracked;
 pub(crate) mod two_camera;
 pub mod whole_take;
 
@@ -38,6 +40,7 @@ use serde::Serialize;
 use crate::files;
 use crate::progress;
 use frame::{FrameName, FrameRanges};
+use lose::Lose;
 use method::{Landmarks, Method, Outcome, Sequence};
 use methods::{MethodName, Prepared};
 use reference::Reference;
@@ -76,6 +79,9 @@ pub struct Arguments {
     /// joins the hand), thumb (alone), other (the mask of another frame), nothing.
     #[arg(long, value_name = "KIND:CAMERA")]
     spoil: Option<Spoil>,
+    /// Lose a camera in the second and in the last quarter of the frames.
+    #[arg(long, value_name = "CAMERA")]
+    lose: Option<Lose>,
     /// Write the rows as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -179,6 +185,7 @@ impl Evaluation<'_> {
                     input: *input,
                     frames,
                     spoil: self.spoil(),
+                    lose: self.arguments.lose.as_ref(),
                 };
                 notes.extend(self.line(&sequence, &*prepared.method(*method), reported)?);
                 self.arguments.write(reported)?;
@@ -196,6 +203,7 @@ impl Evaluation<'_> {
         let wanted = |method: &MethodName, input: Input| {
             self.arguments.input.is_none_or(|only| only == input)
                 && method.inputs().contains(&input)
+                && (self.arguments.lose.is_none() || method.may_lose_cameras())
         };
         let job = |input: Input, method: MethodName| {
             let frames = self.frames(method, views, input);
@@ -244,6 +252,10 @@ impl Evaluation<'_> {
             [&self.take.name, &*cameras.join("+"), sequence.input.name(), method.name()].join("-");
         let title = match &self.arguments.spoil {
             Some(spoil) => format!("{title}-{spoil}"),
+            None => title,
+        };
+        let title = match &self.arguments.lose {
+            Some(lose) => format!("{title}-{lose}"),
             None => title,
         };
         self.progress.begin(&title, sequence.frames.len());

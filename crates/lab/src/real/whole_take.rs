@@ -4,7 +4,7 @@
 use std::sync::OnceLock;
 
 use anyhow::{Result, anyhow};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use image::DynamicImage;
 use phalanx::{FrameFit, Progress, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take};
 use phalanx_camera::Camera;
@@ -44,7 +44,7 @@ impl Fits {
             return Ok(fitted);
         }
         let frames: Vec<TakeFrame> = (0..sequence.frames.len())
-            .map(|number| Ok(self.frame(sequence.input, &sequence.pictures(number)?)))
+            .map(|number| self.frame_of(sequence, number))
             .collect::<Result<_>>()?;
         let hand = HandShape { side: sequence.take.side, ..HandShape::adult() };
         let settings = TakeSettings { hand, ..TakeSettings::default() };
@@ -52,6 +52,24 @@ impl Fits {
             timed(|| anyhow::Ok(fit_take(&sequence.cameras(), &frames, &settings, progress)))?;
         let frame_ms = 1e3 * seconds / frames.len() as f64;
         Ok(cell.get_or_init(|| Fitted { take, frame_ms }))
+    }
+
+    /// The take's fit, or why there is none.
+    pub fn take(
+        &self,
+        sequence: &Sequence<'_>,
+        progress: &dyn Progress,
+    ) -> Result<&Result<TakeFit, phalanx::Error>> {
+        Ok(&self.of(sequence, progress)?.take)
+    }
+
+    /// What the cameras saw in the frame of a number, as masks; none of a camera that is lost then.
+    pub fn frame_of(&self, sequence: &Sequence<'_>, number: usize) -> Result<TakeFrame> {
+        let mut frame = self.frame(sequence.input, &sequence.pictures(number)?);
+        for (view, mask) in frame.masks.iter_mut().enumerate() {
+            *mask = mask.take().filter(|_| !sequence.is_lost(view, number));
+        }
+        Ok(frame)
     }
 
     /// What the cameras saw, as masks.
@@ -75,9 +93,9 @@ impl Default for Fits {
     }
 }
 
-fn found(cameras: &[Camera], take: &TakeFit, fit: &FrameFit) -> Found {
+/// A fitted frame of a hand whose poses are said about `rest`.
+pub fn found(cameras: &[Camera], hand: &HandShape, rest: &DAffine3, fit: &FrameFit) -> Found {
     let missing = cameras.iter().zip(&fit.views).filter(|(_, view)| view.missing.is_some());
-    let rest = take.volume.volume.rest_frame();
     // A joint's deviation is in all directions together.
     let along_each = |std: f64| DVec3::splat(std / 3.0_f64.sqrt());
     Found {
@@ -85,8 +103,12 @@ fn found(cameras: &[Camera], take: &TakeFit, fit: &FrameFit) -> Found {
         deviations: Some(fit.joint_std.map(along_each)),
         doubts: fit.doubts.iter().map(|doubt| format!("{doubt:?}")).collect(),
         left_out: missing.map(|(camera, _)| camera.name.clone()).collect(),
-        ..Found::posed(&take.hand, &fit.pose, &rest, None)
+        ..Found::posed(hand, &fit.pose, rest, None)
     }
+}
+
+fn of_take(cameras: &[Camera], take: &TakeFit, fit: &FrameFit) -> Found {
+    found(cameras, &take.hand, &take.volume.volume.rest_frame(), fit)
 }
 
 /// `phalanx::fit_take`.
@@ -102,7 +124,7 @@ impl Method for WholeTake<'_> {
         let cameras = sequence.cameras();
         let outcome = |number: usize| Outcome {
             found: match take {
-                Ok(take) => Ok(found(&cameras, take, &take.frames[number])),
+                Ok(take) => Ok(of_take(&cameras, take, &take.frames[number])),
                 Err(error) => Err(anyhow!("{error}")),
             },
             cpu_ms: Some(*frame_ms),
@@ -129,7 +151,7 @@ impl Method for FramesAlone<'_> {
             |(), pictures| {
                 let take = take.as_ref().map_err(|error| anyhow!("{error}"))?;
                 let fit = fit_frame(&cameras, &self.0.frame(sequence.input, pictures), take)?;
-                Ok(found(&cameras, take, &fit))
+                Ok(of_take(&cameras, take, &fit))
             },
         )
     }

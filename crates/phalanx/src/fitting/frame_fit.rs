@@ -47,7 +47,7 @@ pub(super) struct FrameFitter<'a> {
 }
 
 /// A pose found.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub(super) struct Found {
     /// The frame of the hand at rest that the pose is in.
     pub(super) rest: DAffine3,
@@ -181,7 +181,7 @@ impl FrameFitter<'_> {
     }
 
     /// The ball that holds a hand with its wrist and arm as a frame has them.
-    fn ball(&self, frame: &DAffine3) -> BoundingSphere {
+    pub(super) fn ball(&self, frame: &DAffine3) -> BoundingSphere {
         let length = observation::length_mm(self.hand);
         observation::ball_of(frame.translation, frame.matrix3.z_axis, length)
     }
@@ -292,7 +292,7 @@ impl FrameFitter<'_> {
     }
 
     /// Starts after a few coarse steps, the best first.
-    fn screen(
+    pub(super) fn screen(
         &self,
         rest: &DAffine3,
         evidence: &[SilhouetteObservation],

@@ -1,6 +1,6 @@
 //! How far a pose is from what views show.
 
-use phalanx_refine::Agreement;
+use phalanx_refine::{Agreement, PoseFit};
 
 /// A view of which more than this share is unexplained begins to count less than others: hands that are
 /// drawn with other proportions and ragged borders leave about half as much.
@@ -29,4 +29,20 @@ pub(super) fn of_views(seen: &[f64], views: usize) -> f64 {
     // One without a border explains nothing.
     let of_others = (views - seen.len()) as f64 * robust(1.0 / CONTRADICTION);
     (of_seen + of_others) / views.max(1) as f64
+}
+
+/// How far each view of a fit is from agreeing with it.
+fn each(fit: &PoseFit) -> impl Iterator<Item = f64> {
+    let views = fit.ious.iter().zip(&fit.unexplained);
+    views.map(|(&iou, &unexplained)| of_view(&Agreement { iou, unexplained }))
+}
+
+/// How far `views` views together are from agreeing with a fit to those that show any of the hand.
+pub(super) fn of_fit(fit: &PoseFit, views: usize) -> f64 {
+    of_views(&each(fit).collect::<Vec<_>>(), views)
+}
+
+/// Whether no view contradicts a fit to it.
+pub(super) fn agrees(fit: &PoseFit) -> bool {
+    each(fit).all(|misfit| misfit <= 1.0)
 }

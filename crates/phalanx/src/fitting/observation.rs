@@ -96,7 +96,7 @@ impl Sight {
 }
 
 impl View {
-    /// What is seen of the ball: the component that fills most of it, and those that lie mostly within.
+    /// What is seen of the ball.
     fn crop(&self, detections: &Detections, ball: BoundingSphere) -> Option<HandCrop> {
         if self.is_empty {
             return None;
@@ -107,16 +107,26 @@ impl View {
                 parts.push(hand);
             }
         }
-        let crop = |part: &HandDetection| -> Option<(u32, bool, HandCrop)> {
-            let mask = self.finder.isolate(part);
-            let crop = HandCrop::onto(&detections.camera, &mask, ball).ok()?;
-            Some((crop.filled(), crop.holds_most_of(&mask), crop))
-        };
-        let mut crops: Vec<(u32, bool, HandCrop)> = parts.into_iter().filter_map(crop).collect();
-        crops.sort_by_key(|(filled, ..)| std::cmp::Reverse(*filled));
-        let mut crops = crops.into_iter();
-        let (filled, _, mut whole) = crops.next()?;
-        crops.filter(|(_, is_within, _)| *is_within).for_each(|(.., part)| whole.add(&part));
-        (filled > 0).then_some(whole)
+        let alone = parts.into_iter().map(|part| self.finder.isolate(part));
+        crop_of(&detections.camera, alone, ball)
     }
+}
+
+/// What a camera sees of a ball, from the components of its mask: the one that fills most of it, and those
+/// that lie mostly within.
+pub(super) fn crop_of(
+    camera: &Camera,
+    components: impl Iterator<Item = Mask>,
+    ball: BoundingSphere,
+) -> Option<HandCrop> {
+    let crop = |mask: Mask| -> Option<(u32, bool, HandCrop)> {
+        let crop = HandCrop::onto(camera, &mask, ball).ok()?;
+        Some((crop.filled(), crop.holds_most_of(&mask), crop))
+    };
+    let mut crops: Vec<(u32, bool, HandCrop)> = components.filter_map(crop).collect();
+    crops.sort_by_key(|(filled, ..)| std::cmp::Reverse(*filled));
+    let mut crops = crops.into_iter();
+    let (filled, _, mut whole) = crops.next()?;
+    crops.filter(|(_, is_within, _)| *is_within).for_each(|(.., part)| whole.add(&part));
+    (filled > 0).then_some(whole)
 }

@@ -9,6 +9,7 @@ use super::flesh;
 use super::frame_fit::{Found, FrameFitter};
 use super::misfit;
 use super::proportions::KnownHand;
+use super::starts;
 use super::views;
 use crate::Result;
 
@@ -146,11 +147,24 @@ impl Reporter<'_> {
         doubted.into_iter().map(|view| FitDoubt::CutOff { view })
     }
 
+    /// A frame in which no view shows a hand, where it is expected to be.
+    pub(super) fn unseen(&self, pose: &Pose, rest: &DAffine3) -> FrameFit {
+        let pose = starts::in_frame(pose, rest, &self.rest, self.fitter.hand);
+        FrameFit {
+            pose,
+            std: [f64::INFINITY; Dof::COUNT],
+            joints: self.fitter.hand.pose(&pose, &self.rest).joints,
+            joint_std: [f64::INFINITY; JOINTS],
+            views: vec![NOTHING; self.cameras.len()],
+            doubts: vec![FitDoubt::NotSeen],
+            converged: false,
+        }
+    }
+
     /// A frame in which no view shows a hand, beside the nearest that does.
     pub(super) fn not_seen(&self, nearest: &FrameFit) -> FrameFit {
-        let nothing = ViewFit { missing: Some(Missing::NoHand), overlap: None };
         FrameFit {
-            views: vec![nothing; self.cameras.len()],
+            views: vec![NOTHING; self.cameras.len()],
             doubts: vec![FitDoubt::NotSeen],
             converged: false,
             ..nearest.clone()
@@ -165,6 +179,9 @@ const ENOUGH: usize = 2;
 fn used(views: &[ViewFit]) -> impl Iterator<Item = usize> {
     (0..views.len()).filter(|&view| views[view].missing.is_none())
 }
+
+/// A view that shows no hand.
+const NOTHING: ViewFit = ViewFit { missing: Some(Missing::NoHand), overlap: None };
 
 /// Whether a camera's picture shows points of the world.
 trait SeesAll {

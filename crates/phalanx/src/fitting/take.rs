@@ -60,15 +60,22 @@ pub struct TakeFit {
     pub volume: VolumeEstimate,
     /// Frame by frame.
     pub frames: Vec<FrameFit>,
-    known: Known,
+    pub(super) known: Known,
 }
 
 /// What a take tells of its hand and its cameras, besides poses.
 #[derive(Debug, Clone)]
-struct Known {
-    hand: KnownHand,
+pub(super) struct Known {
+    pub(super) hand: KnownHand,
     /// How much each view's border counts.
-    weights: Vec<f64>,
+    pub(super) weights: Vec<f64>,
+}
+
+impl Known {
+    /// Of a hand and of views of which nothing is known.
+    pub(super) fn nothing(hand: &HandShape, views: usize) -> Self {
+        Self { hand: KnownHand::anyone(hand), weights: vec![1.0; views] }
+    }
 }
 
 /// How often the hand is learnt, each time from frames fitted with it as it was before: a finger that was

@@ -112,6 +112,15 @@ fn level(mask: &Mask, position: DVec2) -> f64 {
     let first = corner.floor();
     let share = corner - first;
     let (x, y) = (first.x as i64, first.y as i64);
+    if x >= 0 && y >= 0 && x + 1 < i64::from(mask.width()) && y + 1 < i64::from(mask.height()) {
+        let at = y as usize * mask.width() as usize + x as usize;
+        let (above, below) = (&mask.as_raw()[at..], &mask.as_raw()[at + mask.width() as usize..]);
+        let corners = [above[0], above[1], below[0], below[1]].map(|pixel| pixel > 127);
+        // Most places are all hand or all background.
+        if corners.iter().all(|&hand| hand == corners[0]) {
+            return f64::from(u8::from(corners[0]));
+        }
+    }
     let hand = |dx: i64, dy: i64| {
         let (x, y) = (x + dx, y + dy);
         let within =

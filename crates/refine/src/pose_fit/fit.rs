@@ -111,10 +111,22 @@ impl PoseFitSettings {
             problem.freedom = FreeParameters { hand: nuisance.hand, cameras: nuisance.cameras };
             best = self.fit_nuisance(&problem, &given, &best, &mut views)?;
         }
-        let ious = ious(&problem, &best.state, self.finest(), &mut views)?.swap_remove(0);
+        let fit = self.concluded(&problem, &best, &mut views)?;
+        Ok(PoseFit { nuisance_fitted, ..fit })
+    }
+
+    /// What came of one frame.
+    pub(crate) fn concluded(
+        &self,
+        problem: &Problem<'_>,
+        best: &Outcome,
+        views: &mut [Vec<ViewMatcher>],
+    ) -> Result<PoseFit> {
+        let ious = ious(problem, &best.state, self.finest(), views)?.swap_remove(0);
+        let numbers = problem.frames[0].prior.dofs().len();
         Ok(PoseFit {
             pose: best.state.frames[0].pose,
-            covariance: covariance(&best.frames[0], prior.dofs().len()).ok_or_else(|| {
+            covariance: covariance(&best.frames[0], numbers).ok_or_else(|| {
                 let reason = "leaves directions open that the silhouettes do not tell".to_owned();
                 Error::Precision { reason }
             })?,
@@ -122,7 +134,7 @@ impl PoseFitSettings {
             unexplained: best.unexplained(self.finest()),
             boundary_rms_px: best.boundary_rms_px(self.noise),
             energy: best.energy,
-            nuisance_fitted,
+            nuisance_fitted: false,
             converged: best.converged,
             steps: best.steps,
         })

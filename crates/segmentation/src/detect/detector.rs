@@ -114,12 +114,25 @@ impl HandDetector {
         if hands.is_empty() { Err(Error::NoHand) } else { Ok(hands) }
     }
 
+    /// Each component of a mask that is as large as a hand, alone. Speckle is removed first; where wrists
+    /// may be is not asked.
+    ///
+    /// # Errors
+    /// As of [`find`](Self::find).
+    pub fn components(&mut self, mask: &Mask, cleanup: &Cleanup) -> Result<Vec<Mask>> {
+        let large = self.components_of(mask, cleanup)?;
+        Ok(large.into_iter().map(|component| self.alone(component)).collect())
+    }
+
     /// The mask of the last search with nothing but a hand's component, and its arm.
     pub fn isolate(&self, hand: &HandDetection) -> Mask {
+        self.alone(hand.component)
+    }
+
+    fn alone(&self, own: usize) -> Mask {
         let mut mask = self.cleaned.clone();
         let width = mask.width() as usize;
-        let others = |component: usize, _| component != hand.component;
-        self.components.paint(&mut mask, width, 0, others);
+        self.components.paint(&mut mask, width, 0, |component, _| component != own);
         mask
     }
 

@@ -1,0 +1,335 @@
+//! The tracker: frames in, poses out.
+
+use std::cmp::Ordering;
+
+use glam::DAffine3;
+use phalanx_camera::Camera;
+use phalanx_hand::HandShape;
+use phalanx_refine::{PoseFitSettings, PosePrior};
+use phalanx_segmentation::HandDetector;
+
+use super::follow::{self, Followed, follow};
+use super::motion::{Motion, Prediction};
+use super::noise::MotionNoise;
+use super::own_hand::OwnHand;
+use super::recent::Recent;
+use super::recover::recover;
+use super::seen::Seen;
+use crate::fitting::frame_fit::{Found, FrameFitter};
+use crate::fitting::observation::fitted_hand;
+use crate::fitting::proportions::HandEvidence;
+use crate::fitting::report::{FrameFit, Reporter};
+use crate::fitting::take::{Known, Proportions, TakeFit, TakeFrame};
+use crate::fitting::{borders, consensus, misfit, starts, views};
+use crate::{Error, Result};
+
+/// How long an answer may wait for what comes after it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Delay {
+    /// Each frame is answered from itself and those before it.
+    None,
+    /// Each frame is answered once the next one is there, in its light.
+    #[default]
+    OneFrame,
+}
+
+/// How a hand is tracked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrackSettings {
+    /// The hand, which may be a mean one, and its side.
+    pub hand: HandShape,
+    /// Whether the hand is that person's, or its proportions are learnt on the way and then kept.
+    pub proportions: Proportions,
+    /// How long answers may wait.
+    pub delay: Delay,
+}
+
+impl Default for TrackSettings {
+    /// A right hand like any other, a frame late.
+    fn default() -> Self {
+        let (hand, proportions) = (HandShape::adult(), Proportions::FromTake);
+        Self { hand, proportions, delay: Delay::default() }
+    }
+}
+
+/// A frame that was tracked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrackedFrame {
+    /// When it was taken, seconds.
+    pub time: f64,
+    /// The pose; `None` as long as no view has shown a hand.
+    pub fit: Option<FrameFit>,
+}
+
+/// Follows one hand through frames that come one after the other, at any rate.
+///
+/// The same frames give the same poses, whether they are there already or still to come, at any number of
+/// threads.
+#[derive(Debug)]
+pub struct Tracker {
+    cameras: Vec<Camera>,
+    postures: PosePrior,
+    /// How frames are followed, and how hands are looked for.
+    following: PoseFitSettings,
+    searching: PoseFitSettings,
+    delay: Delay,
+    known: Known,
+    /// Frames that the hand is going to be learnt from; `None` once it is known.
+    own_hand: Option<OwnHand>,
+    /// The frame of rest that poses are said in.
+    rest: Option<DAffine3>,
+    noise: MotionNoise,
+    last: Option<Last>,
+    finder: HandDetector,
+    recent: Recent,
+}
+
+/// The frame that came last.
+#[derive(Debug, Clone)]
+struct Last {
+    time: f64,
+    /// `None` where no view showed the hand.
+    found: Option<Found>,
+    /// `None` as long as no view has shown a hand.
+    motion: Option<Motion>,
+}
+
+impl Tracker {
+    /// Of one hand before cameras that stand still.
+    ///
+    /// # Errors
+    /// A hand that no one has.
+    pub fn new(cameras: &[Camera], settings: &TrackSettings) -> Result<Self> {
+        settings.hand.validate()?;
+        let known = Known::nothing(&fitted_hand(&settings.hand), cameras.len());
+        let own_hand = (settings.proportions == Proportions::FromTake)
+            .then(|| OwnHand::new(known.hand.shape.clone()));
+        Self::with(cameras, known, own_hand, None, settings.delay)
+    }
+
+    /// Of the hand that a take was fitted to, before the same cameras. Poses are said in the take's volume.
+    ///
+    /// # Errors
+    /// None today.
+    pub fn of_take(cameras: &[Camera], take: &TakeFit, delay: Delay) -> Result<Self> {
+        let rest = take.volume.volume.rest_frame();
+        Self::with(cameras, take.known.clone(), None, Some(rest), delay)
+    }
+
+    fn with(
+        cameras: &[Camera],
+        known: Known,
+        own_hand: Option<OwnHand>,
+        rest: Option<DAffine3>,
+        delay: Delay,
+    ) -> Result<Self> {
+        let unit = known.weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        Ok(Self {
+            cameras: cameras.to_vec(),
+            postures: starts::pose_prior()?,
+            following: follow::settings(),
+            searching: consensus::refinement(),
+            delay,
+            known,
+            own_hand,
+            rest,
+            noise: MotionNoise::new(unit),
+            last: None,
+            finder: HandDetector::default(),
+            recent: Recent::default(),
+        })
+    }
+
+    /// The hand as it is known now.
+    pub fn hand(&self) -> &HandShape {
+        &self.known.hand.shape
+    }
+
+    /// The frame of the hand at rest that poses are said in, to the world: of the take, else of the first
+    /// hand that was seen; `None` before.
+    pub fn world_from_hand(&self) -> Option<DAffine3> {
+        self.rest
+    }
+
+    /// Takes the next frame: `time` in seconds, later than the one before. Gives the frame that is due: this
+    /// one or, a frame late, the one before.
+    ///
+    /// # Errors
+    /// A time that is not after the last one, or another number of masks than cameras.
+    pub fn push(&mut self, time: f64, frame: &TakeFrame) -> Result<Option<TrackedFrame>> {
+        if let Some(last) = &self.last
+            && time.partial_cmp(&last.time) != Some(Ordering::Greater)
+        {
+            return Err(Error::FrameTime { time, before: last.time });
+        }
+        let last = self.last.take();
+        let prediction = last.as_ref().and_then(|last| {
+            Some(last.motion.as_ref()?.predicted(time - last.time, &self.noise, self.hand()))
+        });
+        let next = match (&last, &prediction) {
+            (Some(last), Some(prediction)) => self.followed(time, frame, last, prediction)?,
+            _ => self.begun(time, frame)?,
+        };
+        let due = match (self.delay, &last) {
+            (Delay::None, _) => Some(self.report(&next)?),
+            (Delay::OneFrame, None) => None,
+            (Delay::OneFrame, Some(last)) => {
+                Some(self.report(&self.in_the_light(last, prediction.as_ref(), &next))?)
+            }
+        };
+        self.learn_hand(&next)?;
+        self.last = Some(next);
+        Ok(due)
+    }
+
+    /// The frame that is still due.
+    ///
+    /// # Errors
+    /// A hand that a camera cannot draw.
+    pub fn finish(mut self) -> Result<Option<TrackedFrame>> {
+        match (self.delay, self.last.take()) {
+            (Delay::OneFrame, Some(last)) => Ok(Some(self.report(&last)?)),
+            _ => Ok(None),
+        }
+    }
+
+    /// How frames are fitted with what is known of the hand and of the borders.
+    fn fitter<'a>(&'a self, refinement: &'a PoseFitSettings) -> FrameFitter<'a> {
+        let weights = borders::relative(&self.known.weights);
+        FrameFitter { hand: self.hand(), prior: &self.postures, refinement, weights }
+    }
+
+    /// A frame before which no hand was seen.
+    fn begun(&mut self, time: f64, frame: &TakeFrame) -> Result<Last> {
+        let near: Vec<DAffine3> = self.rest.into_iter().collect();
+        let fitter = self.fitter(&self.searching);
+        let found = recover(&fitter, &self.cameras, frame, None, &near)?;
+        let found = found.map(|found| self.agreeing(found)).transpose()?;
+        let motion = found.as_ref().map(|found| self.starting(found));
+        if let Some(motion) = &motion {
+            self.rest.get_or_insert(motion.rest);
+        }
+        Ok(Last { time, found, motion })
+    }
+
+    /// A frame of a hand whose motion is known.
+    fn followed(
+        &mut self,
+        time: f64,
+        frame: &TakeFrame,
+        last: &Last,
+        prediction: &Prediction,
+    ) -> Result<Last> {
+        let seen = Seen::of(&self.cameras, &frame.masks, &mut self.finder)?;
+        let predicted = &prediction.motion;
+        let before = last.motion.as_ref().unwrap_or(predicted);
+        let fitter = self.fitter(&self.following);
+        let followed = follow(&fitter, &seen, before, predicted, &self.noise, self.recent.usual())?;
+        let is_good = followed.as_ref().is_some_and(|own| misfit::agrees(&own.found.refined));
+        if !is_good && !seen.is_empty() {
+            let near: Vec<DAffine3> = [predicted.rest].into_iter().chain(self.rest).collect();
+            let badly = followed.as_ref().map(|followed| &followed.found);
+            let fitter = self.fitter(&self.searching);
+            let found = recover(&fitter, &self.cameras, frame, badly, &near)?;
+            let found = found.filter(|found| {
+                badly.is_none_or(|badly| found.misfit < WORTH_A_JUMP * badly.misfit)
+            });
+            if let Some(found) = found {
+                let found = self.agreeing(found)?;
+                let motion = Some(self.starting(&found));
+                return Ok(Last { time, found: Some(found), motion });
+            }
+        }
+        let Some(followed) = followed else {
+            return Ok(Last { time, found: None, motion: Some(predicted.clone()) });
+        };
+        let Followed { found, motion, offset, before, after } = followed;
+        self.noise.learn(&offset, &before, &after);
+        self.recent.push(found.misfit);
+        let found = self.agreeing(found)?;
+        // Without a view the pose is another.
+        let motion = if found.left_out.contains(&true) { self.starting(&found) } else { motion };
+        Ok(Last { time, found: Some(found), motion: Some(motion) })
+    }
+
+    /// Keeps a frame that tells of the hand, and learns the hand once there are enough.
+    fn learn_hand(&mut self, next: &Last) -> Result<()> {
+        let (Some(own_hand), Some(found), Some(rest)) =
+            (&mut self.own_hand, &next.found, &self.rest)
+        else {
+            return Ok(());
+        };
+        if !misfit::agrees(&found.refined) || !own_hand.keep(found) {
+            return Ok(());
+        }
+        let rest = *rest;
+        let Some(own_hand) = self.own_hand.take() else { return Ok(()) };
+        let believing = consensus::believing();
+        let absolute =
+            FrameFitter { weights: self.known.weights.clone(), ..self.fitter(&believing) };
+        let noise = borders::border_noise(&absolute, own_hand.kept())?;
+        self.known.weights = borders::weights(&noise, self.searching.noise);
+        let independent = self.known.weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let border = HandEvidence { independent, persistent: borders::persistent(&noise) };
+        let learnt = own_hand.learn(&self.fitter(&believing), &rest, border)?;
+        if let Some(learnt) = learnt {
+            self.known.hand = learnt;
+        }
+        Ok(())
+    }
+
+    /// A frame without the views that disagree.
+    fn agreeing(&self, found: Found) -> Result<Found> {
+        if misfit::agrees(&found.refined) {
+            return Ok(found);
+        }
+        views::without_disagreeing(&self.fitter(&self.searching), &found)
+    }
+
+    /// The motion of a hand that was found without one.
+    fn starting(&self, found: &Found) -> Motion {
+        let covariance: Vec<f64> =
+            found.refined.covariance.iter().map(|own| own / self.noise.unit()).collect();
+        Motion::starting(found.rest, found.refined.pose, &covariance, self.hand())
+    }
+
+    /// A frame in the light of the next one.
+    fn in_the_light(&self, last: &Last, prediction: Option<&Prediction>, next: &Last) -> Last {
+        let (Some(found), Some(motion)) = (&last.found, &last.motion) else {
+            return last.clone();
+        };
+        let (Some(prediction), Some(later)) = (prediction, &next.motion) else {
+            return last.clone();
+        };
+        // A hand that was looked for elsewhere tells nothing of the way to it.
+        let is_followed = |found: &Found| found.rest == prediction.motion.rest;
+        let smoothing = prediction.smoothing.as_ref();
+        let Some(smoothing) = smoothing.filter(|_| next.found.as_ref().is_some_and(is_followed))
+        else {
+            return last.clone();
+        };
+        let pose = motion.smoothed(smoothing, &prediction.motion, later, self.hand());
+        let refined = phalanx_refine::PoseFit { pose, ..found.refined.clone() };
+        let found = Found { rest: motion.rest, refined, ..found.clone() };
+        Last { found: Some(found), ..last.clone() }
+    }
+
+    /// What is said of a frame.
+    fn report(&self, last: &Last) -> Result<TrackedFrame> {
+        let Last { time, found, motion } = last;
+        let (Some(motion), Some(rest)) = (motion, self.rest) else {
+            return Ok(TrackedFrame { time: *time, fit: None });
+        };
+        let Known { hand, weights } = &self.known;
+        let fitter = &FrameFitter { weights: weights.clone(), ..self.fitter(&self.searching) };
+        let reporter = Reporter { cameras: &self.cameras, fitter, hand, rest };
+        let fit = match found {
+            Some(found) => reporter.report(found)?,
+            None => reporter.unseen(&motion.pose, &motion.rest),
+        };
+        Ok(TrackedFrame { time: *time, fit: Some(fit) })
+    }
+}
+
+/// A hand that was looked for is taken for the one that was followed if it is nearer to agreeing by so much.
+const WORTH_A_JUMP: f64 = 0.8;
