@@ -62,7 +62,7 @@ async function show(page, width, colorScheme) {
   assert.ok(overflow <= 0, `the page is ${overflow} px too wide at ${width} px`);
   const picture = (end) => file.replace(".html", `-${width}-${colorScheme}${end}.png`);
   await page.screenshot({ path: picture("") });
-  if (width === 1280) await page.screenshot({ path: picture("-whole"), fullPage: true });
+  if (width === 1280 && colorScheme === "light") await page.screenshot({ path: picture("-whole"), fullPage: true });
 }
 
 // What a checker of accessibility finds serious.
