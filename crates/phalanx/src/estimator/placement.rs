@@ -15,7 +15,7 @@ use crate::window::PicturedHand;
 /// What a hand's place in its windows tells.
 pub(crate) const PLACED: [Dof; 5] = [Dof::ThetaX, Dof::ThetaY, Dof::TX, Dof::TY, Dof::TZ];
 
-/// Standard deviations of [`PLACED`] numbers, radians and mm.
+/// Standard deviations of the θ_X, θ_Y, t_X, t_Y and t_Z of a hand, radians and mm.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PlacementErrors(pub [f64; PLACED.len()]);
 

@@ -28,7 +28,7 @@ impl PoseFitSettings {
     /// says how well each then fits. Energies of one call can be compared with each other.
     ///
     /// # Errors
-    /// As of [`run`](Self::run).
+    /// As of [`fit`](Self::fit).
     pub fn screen(
         &self,
         hand: &HandShape,
