@@ -201,7 +201,7 @@ fn the_same_at_any_number_of_threads() {
 /// them.
 #[test]
 fn few_samples_of_a_periodic_list_see_every_phase() {
-    const PHASES: usize = 4;
+    const PHASES: usize = BINS;
     let histogram = |phase: usize| {
         let mut histogram = vec![0.0_f32; BINS];
         histogram[phase] = 1.0;
