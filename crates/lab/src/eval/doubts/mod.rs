@@ -186,7 +186,11 @@ impl Drawn<'_> {
                 let doubts = estimator.explain(pictures, &estimate, &mut workspace)?;
                 Ok((Outcome::Answered(doubts), Some(estimate.pose)))
             }
-            Err(Error::Silhouette { camera, .. } | Error::NoWindow { camera, .. }) => {
+            Err(
+                Error::Silhouette { camera, .. }
+                | Error::NoWindow { camera, .. }
+                | Error::ShapeContext { camera, .. },
+            ) => {
                 let of_name = self.rig.cameras.iter().position(|seeing| seeing.name == camera);
                 Ok((Outcome::Refused(of_name.unwrap_or_default()), None))
             }
