@@ -21,7 +21,7 @@ const GUESSES: usize = 2;
 const STARTS: usize = 2;
 
 /// Of screened starts so many are fitted fully.
-const KEPT: usize = 2;
+const KEPT: usize = 3;
 
 /// Starts that are this near to each other lead to the same pose, radians.
 const SAME: f64 = 0.15;
