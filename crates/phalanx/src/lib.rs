@@ -32,8 +32,8 @@ pub use features::describer::{
 pub use features::descriptor::{Descriptor, ExtraFeatures, describe_scenes};
 pub use fitting::{
     Delay, FitDoubt, FrameFit, Missing, Proportions, TakeFit, TakeFrame, TakeSettings,
-    TrackSettings, TrackedFrame, Tracker, ViewFit, VolumeEstimate, estimate_volume, fit_frame,
-    fit_take,
+    TrackSettings, TrackedFrame, Tracker, TrackerState, ViewFit, VolumeEstimate, estimate_volume,
+    fit_frame, fit_take,
 };
 pub use images::decode::decode_picture;
 pub use images::overlay::{draw_overlay, draw_window_overlay, working_window};

@@ -252,3 +252,29 @@ fn a_hand_that_has_not_been_seen_yet_has_no_pose_and_time_goes_on() {
     let error = tracker.push(0.1, &frames[0]).expect_err("no time has passed");
     assert!(matches!(error, Error::FrameTime { .. }), "{error}");
 }
+
+#[test]
+fn a_tracker_goes_on_from_its_state_as_if_it_had_never_stopped() {
+    let Drawn { cameras, mut frames, .. } = drawn(6);
+    frames[2].masks.fill(None);
+    let time = |k: usize| k as f64 / 30.0;
+    let whole = track(&cameras, &frames, Delay::OneFrame);
+    let settings =
+        TrackSettings { hand: hand(), proportions: Proportions::Given, delay: Delay::OneFrame };
+    let mut tracker = Tracker::new(&cameras, &settings).expect("a hand");
+    for (broken, frame) in frames.iter().enumerate() {
+        let state = tracker.state().expect("the hand is given");
+        let mut resumed = Tracker::resumed(&cameras, state).expect("a tracker");
+        let mut tracked = Vec::new();
+        for k in broken..frames.len() {
+            let due = resumed.push(time(k), &frames[k]).expect("a frame");
+            assert_eq!(due.is_some(), k > broken, "{k}");
+            tracked.extend(due);
+        }
+        tracked.extend(resumed.finish().expect("a frame"));
+        assert_eq!(tracked, whole[broken..]);
+        tracker.push(time(broken), frame).expect("a frame");
+    }
+    let learning = Tracker::new(&cameras, &TrackSettings::default()).expect("a hand");
+    assert!(learning.state().is_none());
+}

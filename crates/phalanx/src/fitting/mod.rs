@@ -22,4 +22,4 @@ mod views;
 pub use consensus::{VolumeEstimate, estimate_volume};
 pub use report::{FitDoubt, FrameFit, Missing, ViewFit};
 pub use take::{Proportions, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take};
-pub use tracking::{Delay, TrackSettings, TrackedFrame, Tracker};
+pub use tracking::{Delay, TrackSettings, TrackedFrame, Tracker, TrackerState};

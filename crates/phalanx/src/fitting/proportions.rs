@@ -4,6 +4,7 @@ use glam::DAffine3;
 use phalanx_hand::HandShape;
 use phalanx_refine::{BundleAdjustment, BundleFrame, ShapePrior};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::consensus::evenly;
 use super::frame_fit::{Found, FrameFitter};
@@ -18,7 +19,7 @@ const LEARNT_FROM: usize = 16;
 pub(super) const POPULATION: ShapePrior = ShapePrior { size: 0.126, each: 0.06 };
 
 /// A hand, and how well each of its proportions is known (standard deviations of logarithms).
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct KnownHand {
     pub(super) shape: HandShape,
     pub(super) std: Vec<f64>,

@@ -6,6 +6,7 @@ use phalanx_hand::HandShape;
 use phalanx_refine::{PoseFitSettings, PosePrior};
 use phalanx_segmentation::Mask;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::borders;
 use super::consensus::{self, VolumeEstimate};
@@ -64,7 +65,7 @@ pub struct TakeFit {
 }
 
 /// What a take tells of its hand and its cameras, besides poses.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Known {
     pub(super) hand: KnownHand,
     /// How much each view's border counts.

@@ -1,5 +1,6 @@
 //! Hands followed through frames that come one after the other.
 
+mod delay;
 mod follow;
 mod motion;
 mod noise;
@@ -7,6 +8,9 @@ mod own_hand;
 mod recent;
 mod recover;
 mod seen;
+mod state;
 mod tracker;
 
-pub use tracker::{Delay, TrackSettings, TrackedFrame, Tracker};
+pub use delay::Delay;
+pub use state::TrackerState;
+pub use tracker::{TrackSettings, TrackedFrame, Tracker};

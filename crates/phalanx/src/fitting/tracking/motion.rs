@@ -6,6 +6,7 @@ use faer::{Mat, Side};
 use glam::{DAffine3, DMat3};
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::PosePrior;
+use serde::{Deserialize, Serialize};
 
 use super::noise::MotionNoise;
 use crate::Result;
@@ -19,7 +20,7 @@ pub(super) const NUMBERS: usize = Dof::COUNT;
 const LASTS: f64 = 0.5;
 
 /// What is known of a hand's pose and of its velocity.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Motion {
     /// The hand's own frame; its pose is said about it, so that no angle is near the edge of its range.
     pub(super) rest: DAffine3,
@@ -28,6 +29,7 @@ pub(super) struct Motion {
     /// Of each number, per second.
     velocity: [f64; NUMBERS],
     /// The covariance of the pose's numbers, then of their velocities.
+    #[serde(with = "covariance")]
     covariance: Mat<f64>,
 }
 
@@ -227,4 +229,30 @@ fn grown(seconds: f64, kept: f64) -> [f64; 3] {
 /// The places of a covariance, column after column.
 fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..NUMBERS * NUMBERS).map(|k| (k % NUMBERS, k / NUMBERS))
+}
+
+/// A covariance as it is kept: its places, column after column.
+mod covariance {
+    use faer::Mat;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    const SIZE: usize = 2 * super::NUMBERS;
+
+    pub(super) fn serialize<S: Serializer>(
+        matrix: &Mat<f64>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        let places = (0..SIZE * SIZE).map(|k| matrix[(k % SIZE, k / SIZE)]);
+        places.collect::<Vec<f64>>().serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Mat<f64>, D::Error> {
+        let places = Vec::<f64>::deserialize(deserializer)?;
+        if places.len() != SIZE * SIZE {
+            return Err(D::Error::invalid_length(places.len(), &"a covariance of 56 numbers"));
+        }
+        Ok(Mat::from_fn(SIZE, SIZE, |i, j| places[j * SIZE + i]))
+    }
 }

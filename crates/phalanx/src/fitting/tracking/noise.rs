@@ -1,6 +1,7 @@
 //! How much a hand's velocity changes, and how much frames tell, learnt as a take goes on.
 
 use phalanx_hand::Dof;
+use serde::{Deserialize, Serialize};
 
 use super::motion::NUMBERS;
 
@@ -45,7 +46,7 @@ const FREEDOM: f64 = 3.0;
 const TOLD: f64 = 0.1;
 
 /// What a motion is predicted with.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct MotionNoise {
     /// Spectral density of what changes velocities, in squares of a number's unit per s³, by group.
     density: [f64; GROUPS],

@@ -2,6 +2,8 @@
 
 use std::collections::VecDeque;
 
+use serde::{Deserialize, Serialize};
+
 /// Frames that are remembered.
 const FRAMES: usize = 32;
 
@@ -9,7 +11,7 @@ const FRAMES: usize = 32;
 const MOST: f64 = 0.75;
 
 /// The last frames' misfits.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Recent {
     misfits: VecDeque<f64>,
 }

@@ -8,6 +8,7 @@ use phalanx_hand::HandShape;
 use phalanx_refine::{PoseFitSettings, PosePrior};
 use phalanx_segmentation::HandDetector;
 
+use super::delay::Delay;
 use super::follow::{self, Followed, follow};
 use super::motion::{Motion, Prediction};
 use super::noise::MotionNoise;
@@ -15,6 +16,7 @@ use super::own_hand::OwnHand;
 use super::recent::Recent;
 use super::recover::recover;
 use super::seen::Seen;
+use super::state::TrackerState;
 use crate::fitting::frame_fit::{Found, FrameFitter};
 use crate::fitting::observation::fitted_hand;
 use crate::fitting::proportions::HandEvidence;
@@ -22,16 +24,6 @@ use crate::fitting::report::{FrameFit, Reporter};
 use crate::fitting::take::{Known, Proportions, TakeFit, TakeFrame};
 use crate::fitting::{borders, consensus, misfit, starts, views};
 use crate::{Error, Result};
-
-/// How long an answer may wait for what comes after it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Delay {
-    /// Each frame is answered from itself and those before it.
-    None,
-    /// Each frame is answered once the next one is there, in its light.
-    #[default]
-    OneFrame,
-}
 
 /// How a hand is tracked.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,6 +72,8 @@ pub struct Tracker {
     rest: Option<DAffine3>,
     noise: MotionNoise,
     last: Option<Last>,
+    /// Whether the last frame is still to be answered.
+    owes: bool,
     finder: HandDetector,
     recent: Recent,
 }
@@ -135,8 +129,35 @@ impl Tracker {
             rest,
             noise: MotionNoise::new(unit),
             last: None,
+            owes: false,
             finder: HandDetector::default(),
             recent: Recent::default(),
+        })
+    }
+
+    /// One that goes on from a state, before the same cameras. It answers as the tracker that it is the state
+    /// of, from the second frame that it is given on if answers come a frame late, else from the first.
+    ///
+    /// # Errors
+    /// None today.
+    pub fn resumed(cameras: &[Camera], state: TrackerState) -> Result<Self> {
+        let TrackerState { delay, known, rest, noise, recent, last } = state;
+        let last = last.map(|(time, motion)| Last { time, found: None, motion });
+        Ok(Self { noise, last, recent, ..Self::with(cameras, known, None, rest, delay)? })
+    }
+
+    /// What it knows now; `None` as long as the hand is being learnt.
+    pub fn state(&self) -> Option<TrackerState> {
+        if self.own_hand.is_some() {
+            return None;
+        }
+        Some(TrackerState {
+            delay: self.delay,
+            known: self.known.clone(),
+            rest: self.rest,
+            noise: self.noise.clone(),
+            recent: self.recent.clone(),
+            last: self.last.as_ref().map(|last| (last.time, last.motion.clone())),
         })
     }
 
@@ -172,13 +193,14 @@ impl Tracker {
         };
         let due = match (self.delay, &last) {
             (Delay::None, _) => Some(self.report(&next)?),
-            (Delay::OneFrame, None) => None,
-            (Delay::OneFrame, Some(last)) => {
+            (Delay::OneFrame, Some(last)) if self.owes => {
                 Some(self.report(&self.in_the_light(last, prediction.as_ref(), &next))?)
             }
+            (Delay::OneFrame, _) => None,
         };
         self.learn_hand(&next)?;
         self.last = Some(next);
+        self.owes = self.delay == Delay::OneFrame;
         Ok(due)
     }
 
@@ -187,10 +209,8 @@ impl Tracker {
     /// # Errors
     /// A hand that a camera cannot draw.
     pub fn finish(mut self) -> Result<Option<TrackedFrame>> {
-        match (self.delay, self.last.take()) {
-            (Delay::OneFrame, Some(last)) => Ok(Some(self.report(&last)?)),
-            _ => Ok(None),
-        }
+        let last = self.last.take().filter(|_| self.owes);
+        last.map(|last| self.report(&last)).transpose()
     }
 
     /// How frames are fitted with what is known of the hand and of the borders.
