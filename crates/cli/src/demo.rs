@@ -106,7 +106,8 @@ fn written(rig: &Rig, fit: &TakeFit) -> Take {
         let time = number as f64 / RATE;
         take::frame(&rig.cameras, (number, &moment(number)), time, Some(fitted))
     };
-    let header = take::header(&rig.cameras, fit, Some(RATE));
+    let rest = fit.volume.volume.rest_frame();
+    let header = take::header(&rig.cameras, (&fit.hand, rest), Some(RATE));
     Take { header, frames: fit.frames.iter().enumerate().map(frame).collect() }
 }
 

@@ -1,6 +1,6 @@
 //! Where results go: written whole or not at all, and never over what they are made of.
 
-use std::fs::{Metadata, OpenOptions};
+use std::fs::{File, Metadata, OpenOptions};
 use std::io::{ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -80,6 +80,38 @@ impl Output {
             Place::File(target) => to_file(target, bytes),
         };
         written.with_context(|| format!("writing {}", self.path.display()))
+    }
+
+    /// The name beside the file that has `end` after the file's own; `None` where it is no file.
+    pub fn beside(&self, end: &str) -> Option<PathBuf> {
+        let Place::File(target) = &self.place else { return None };
+        let mut name = target.as_os_str().to_owned();
+        name.push(end);
+        Some(PathBuf::from(name))
+    }
+
+    /// Opens what is no file, for a result that is written as it comes; `None` of a file.
+    ///
+    /// # Errors
+    /// What the system says of the place.
+    pub fn stream(&self) -> Result<Option<Box<dyn Write>>> {
+        Ok(match &self.place {
+            Place::StandardOutput => Some(Box::new(std::io::stdout())),
+            Place::Stream(target) => {
+                let opened = OpenOptions::new().write(true).open(target);
+                Some(Box::new(opened.with_context(|| format!("writing {}", self.path.display()))?))
+            }
+            Place::File(_) => None,
+        })
+    }
+
+    /// Puts a complete file that lies [`beside`](Self::beside) it in the file's place.
+    ///
+    /// # Errors
+    /// What the system says of the place.
+    pub fn replace_by(&self, file: &Path) -> Result<()> {
+        let Place::File(target) = &self.place else { return Ok(()) };
+        moved(file, target).with_context(|| format!("writing {}", self.path.display()))
     }
 
     /// Writes a picture as PNG.
@@ -183,6 +215,20 @@ fn to_file(target: &Path, bytes: &[u8]) -> std::io::Result<()> {
     file.as_file().sync_all()?;
     file.persist(target)?;
     Ok(())
+}
+
+/// Moves a complete file to the place of another, as [`to_file`] puts bytes there.
+fn moved(file: &Path, target: &Path) -> std::io::Result<()> {
+    let opened = File::open(file)?;
+    if let Ok(old) = std::fs::metadata(target) {
+        if has_other_names(&old) || !has_same_owner(&old, &opened.metadata()?) {
+            in_place(target, &std::fs::read(file)?)?;
+            return std::fs::remove_file(file);
+        }
+        opened.set_permissions(old.permissions())?;
+    }
+    opened.sync_all()?;
+    std::fs::rename(file, target)
 }
 
 /// Overwrites a file. What is longer than before comes first: if there is no room for it, the file

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
 use phalanx::{
-    Cost, Estimator, Framing, Losses, PartialTraining, Preset, Progress, Shard, Trainer,
+    Cost, Error, Estimator, Framing, Losses, PartialTraining, Preset, Progress, Shard, Trainer,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose, PoseTable};
@@ -143,19 +143,40 @@ pub(crate) fn train(arguments: &Arguments) -> Result<()> {
     }
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
     let forecast = Forecast::new(trainer.cost(rig.cameras.len(), shard), rig.cameras.len());
-    let mut checkpoint = Checkpoint::beside(&out);
-    let earlier = checkpoint.read();
+    let mut checkpoint = Checkpoint::beside(&out, ".unfinished");
+    let earlier = unfinished(&checkpoint);
     if let Some(earlier) = &earlier {
         forecast.bar.say(&format!("going on after {} scenes", earlier.seen()));
     }
-    let mut keep = |part: &PartialTraining| checkpoint.keep(part);
+    let mut keep = |part: &PartialTraining| checkpoint.keep(|| Ok(part.to_bytes()?));
     let part = trainer.resume_shard(&rig, &hand, shard, earlier, &mut keep, &forecast);
-    let part = part.map_err(|error| checkpoint.explained(error))?;
+    let part = part.map_err(|error| explained(error, &checkpoint))?;
     let done = finish(arguments, part, &out, forecast);
     if done.is_ok() {
         checkpoint.remove();
     }
     done
+}
+
+/// What an earlier run left. One that cannot be read is said, and the training begins anew.
+fn unfinished(checkpoint: &Checkpoint) -> Option<PartialTraining> {
+    let (path, bytes) = checkpoint.read()?;
+    let part = PartialTraining::from_bytes(&bytes);
+    part.inspect_err(|error| {
+        eprintln!("phalanx: {}: {error}; the training begins anew", path.display());
+    })
+    .ok()
+}
+
+/// An error of a training that went on; that of another one says which file to remove.
+fn explained(error: Error, checkpoint: &Checkpoint) -> anyhow::Error {
+    match (&error, checkpoint.path()) {
+        (Error::ForeignPart { .. }, Some(path)) => anyhow::anyhow!(
+            "{}: an unfinished training with other settings ({error}); finish it, or remove the file",
+            path.display()
+        ),
+        _ => error.into(),
+    }
 }
 
 /// Writes the model, or a shard's part.

@@ -266,8 +266,8 @@ fn a_tracker_goes_on_from_its_state_as_if_it_had_never_stopped() {
         let state = tracker.state().expect("the hand is given");
         let mut resumed = Tracker::resumed(&cameras, state).expect("a tracker");
         let mut tracked = Vec::new();
-        for k in broken..frames.len() {
-            let due = resumed.push(time(k), &frames[k]).expect("a frame");
+        for (k, frame) in frames.iter().enumerate().skip(broken) {
+            let due = resumed.push(time(k), frame).expect("a frame");
             assert_eq!(due.is_some(), k > broken, "{k}");
             tracked.extend(due);
         }

@@ -1,5 +1,6 @@
 //! The masks of a recording's moments, one after the other.
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 use anyhow::{Result, ensure};
@@ -38,11 +39,11 @@ impl<'a> Reader<'a> {
     ) -> Result<Self> {
         let recordings: Vec<Box<dyn Recording>> =
             paths.iter().map(|path| super::open(path)).collect::<Result<_>>()?;
-        let mut stamps: Vec<Vec<Stamp>> = Vec::new();
+        let mut stamps: Vec<Cow<'_, [Stamp]>> = Vec::new();
         for ((recording, camera), times) in recordings.iter().zip(cameras).zip(times) {
             stamps.push(with_times(recording.stamps(), camera, times.as_deref())?);
         }
-        let stamps: Vec<&[Stamp]> = stamps.iter().map(Vec::as_slice).collect();
+        let stamps: Vec<&[Stamp]> = stamps.iter().map(AsRef::as_ref).collect();
         let timeline = Timeline::new(&stamps);
         let shared =
             timeline.moments.iter().any(|moment| moment.frames.iter().flatten().count() > 1);
@@ -96,8 +97,12 @@ impl<'a> Reader<'a> {
     }
 }
 
-fn with_times(stamps: &[Stamp], camera: &Camera, times: Option<&[f64]>) -> Result<Vec<Stamp>> {
-    let Some(times) = times else { return Ok(stamps.to_vec()) };
+fn with_times<'a>(
+    stamps: &'a [Stamp],
+    camera: &Camera,
+    times: Option<&[f64]>,
+) -> Result<Cow<'a, [Stamp]>> {
+    let Some(times) = times else { return Ok(Cow::Borrowed(stamps)) };
     ensure!(
         times.len() == stamps.len(),
         "camera '{}' has {} frames, but {} times",

@@ -61,6 +61,11 @@ impl Source {
         Reader::open(&self.cameras, &self.paths, &self.times, &self.pictures)
     }
 
+    /// Each camera's recording.
+    pub(crate) fn recordings(&self) -> impl Iterator<Item = (&Camera, &PathBuf)> {
+        self.cameras.iter().zip(&self.paths)
+    }
+
     /// The files and folders that are read.
     pub(crate) fn inputs(&self) -> impl Iterator<Item = &PathBuf> {
         self.paths.iter().chain(&self.times_path)

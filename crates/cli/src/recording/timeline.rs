@@ -1,6 +1,6 @@
 //! Which frames of several cameras belong together.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Stamp;
 
@@ -64,14 +64,16 @@ fn by_name(cameras: &[&[Stamp]]) -> Vec<Moment> {
     // A camera's names follow each other as it has them; one that the cameras before it lack comes
     // where its neighbour is.
     let mut order: Vec<&str> = Vec::new();
+    let mut ordered: BTreeSet<&str> = BTreeSet::new();
     for stamps in cameras {
         let mut after = 0;
         for stamp in *stamps {
             match order[after..].iter().position(|name| *name == stamp.name) {
                 Some(at) => after += at + 1,
-                None if order.contains(&stamp.name.as_str()) => {}
+                None if ordered.contains(&*stamp.name) => {}
                 None => {
                     order.insert(after, &stamp.name);
+                    ordered.insert(&stamp.name);
                     after += 1;
                 }
             }

@@ -1,16 +1,22 @@
 //! A fitted take as it is written.
 
-use phalanx::{FitDoubt, FrameFit, Missing, TakeFit};
+use glam::DAffine3;
+use phalanx::{FitDoubt, FrameFit, Missing};
 use phalanx_camera::Camera;
+use phalanx_hand::HandShape;
 use phalanx_io::take::{FrameView, PoseEstimate, TakeFrame, TakeHeader};
 
 use crate::recording::timeline::Moment;
 
 /// What holds for all frames.
-pub(crate) fn header(cameras: &[Camera], fit: &TakeFit, rate_hz: Option<f64>) -> TakeHeader {
+pub(crate) fn header(
+    cameras: &[Camera],
+    (hand, rest): (&HandShape, DAffine3),
+    rate_hz: Option<f64>,
+) -> TakeHeader {
     TakeHeader {
-        hand: fit.hand.clone(),
-        world_from_hand: fit.volume.volume.rest_frame(),
+        hand: hand.clone(),
+        world_from_hand: rest,
         views: cameras.iter().map(|camera| camera.name.clone()).collect(),
         rate_hz,
         model: None,
@@ -33,11 +39,13 @@ pub(crate) fn frame(
             doubts: vec!["no-hand".to_owned()],
         };
     };
+    let joint_std = fit.joint_std.map(|std| glam::DVec3::splat(std / 3.0_f64.sqrt()));
+    // What views leave open has no deviation.
     let estimate = PoseEstimate {
         pose: fit.pose,
-        std: fit.std.map(Some),
+        std: fit.std.map(|std| std.is_finite().then_some(std)),
         joints: fit.joints,
-        joint_std: Some(fit.joint_std.map(|std| glam::DVec3::splat(std / 3.0_f64.sqrt()))),
+        joint_std: joint_std.iter().all(|std| std.is_finite()).then_some(joint_std),
     };
     let views = fit
         .views
@@ -68,6 +76,7 @@ pub(crate) fn frame(
 fn code(doubt: &FitDoubt, cameras: &[Camera]) -> String {
     match doubt {
         FitDoubt::NotSeen => "no-hand".to_owned(),
+        FitDoubt::Open => "open".to_owned(),
         FitDoubt::PoorFit { .. } => "poor-fit".to_owned(),
         FitDoubt::CutOff { view } => format!("cut-off:{}", cameras[*view].name),
         _ => "doubtful".to_owned(),

@@ -8,6 +8,7 @@ mod manuals;
 mod outputs;
 mod refinements;
 mod refusals;
+mod resumed;
 mod rigs;
 mod takes;
 mod tracks;

@@ -12,7 +12,7 @@ fn closed(frame: usize) -> f64 {
 }
 
 /// The desk's rig with both cameras, and masks of a hand that closes and opens.
-fn recorded(frames: usize) -> Desk {
+pub(crate) fn recorded(frames: usize) -> Desk {
     let desk = Desk::new();
     desk.write_rig("rig.toml");
     for frame in 0..frames {

@@ -47,6 +47,16 @@ impl<W: Write> CsvWriter<W> {
         Ok(Self { csv, meta: header::to_json(&header), header, order: FrameOrder::default() })
     }
 
+    /// Goes on after a frame, the index and time of which are given, that was written before.
+    ///
+    /// # Errors
+    /// A header that does not keep to [`Take::validate`].
+    pub fn after(header: TakeHeader, last: (u64, f64), writer: W) -> Result<Self> {
+        header.validate()?;
+        let csv = ::csv::Writer::from_writer(writer);
+        Ok(Self { csv, meta: String::new(), header, order: FrameOrder::after(last) })
+    }
+
     /// Writes a frame. Angles and lengths have four decimals, times six.
     ///
     /// # Errors

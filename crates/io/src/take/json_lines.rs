@@ -55,6 +55,15 @@ impl<W: Write> JsonLinesWriter<W> {
         Ok(Self { writer, header, order: FrameOrder::default() })
     }
 
+    /// Goes on after a frame, the index and time of which are given, that was written before.
+    ///
+    /// # Errors
+    /// A header that does not keep to [`Take::validate`].
+    pub fn after(header: TakeHeader, last: (u64, f64), writer: W) -> Result<Self> {
+        header.validate()?;
+        Ok(Self { writer, header, order: FrameOrder::after(last) })
+    }
+
     /// Writes a frame's line. Angles and lengths have four decimals, times six.
     ///
     /// # Errors

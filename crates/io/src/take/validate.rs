@@ -35,6 +35,11 @@ pub(super) struct FrameOrder {
 }
 
 impl FrameOrder {
+    /// After a frame with this index and time.
+    pub(super) fn after(last: (u64, f64)) -> Self {
+        Self { last: Some(last) }
+    }
+
     /// Checks a frame, and that it follows the last one.
     pub(super) fn check(&mut self, frame: &TakeFrame, header: &TakeHeader) -> Result<()> {
         let checked = match self.last {

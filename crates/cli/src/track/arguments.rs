@@ -1,0 +1,84 @@
+//! The options of `phalanx track`.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, bail, ensure};
+use clap::Args;
+use phalanx::{Proportions, TakeSettings};
+use phalanx_hand::{HandShape, Side};
+
+use super::rows::Kind;
+use crate::recording::source::RecordingArguments;
+use crate::side::SideName;
+use crate::{input, take_file};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    pub(super) recording: RecordingArguments,
+    /// The cameras, as `phalanx rig import` writes them.
+    #[arg(long, value_name = "FILE.toml")]
+    pub(super) rig: PathBuf,
+    /// The person's hand, as `calibrate-hand` or `--save-hand` writes it; fitted on the way by default.
+    #[arg(long, value_name = "FILE.toml")]
+    pub(super) hand: Option<PathBuf>,
+    /// Which hand it is.
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) side: SideName,
+    /// The frame rate of pictures that have no times; 30 Hz by default.
+    #[arg(long, value_name = "HZ")]
+    pub(super) rate: Option<f64>,
+    /// A recording of up to so many moments is fitted as a whole. Of a longer one as many, evenly spread, tell
+    /// the hand, which is then tracked from frame to frame.
+    #[arg(long, value_name = "MOMENTS", default_value = "240")]
+    pub(super) fit_together: NonZeroUsize,
+    /// Fit all moments together, each in the light of all others, however many there are: takes memory and
+    /// some twenty times as long as tracking, and begins anew if it is broken off.
+    #[arg(long, conflicts_with = "fit_together")]
+    pub(super) whole_take: bool,
+    /// Where the angles go: .csv, .jsonl or .npz by its name, or - for CSV on standard output. While a hand is
+    /// tracked the frames are in OUT.unfinished; a run that was broken off goes on after them, with what is in
+    /// OUT.checkpoint, if it is started again.
+    #[arg(long, value_name = "FILE")]
+    pub(super) out: PathBuf,
+    /// Write the hand that was fitted, for later recordings of the same person.
+    #[arg(long, value_name = "FILE.toml")]
+    pub(super) save_hand: Option<PathBuf>,
+}
+
+impl Arguments {
+    /// What the output's name says that it is to be.
+    pub(super) fn kind(&self) -> Result<Kind> {
+        let out = &self.out;
+        if out == Path::new("-") {
+            return Ok(Kind::Csv);
+        }
+        match take_file::extension(out).as_str() {
+            "csv" => Ok(Kind::Csv),
+            "jsonl" => Ok(Kind::JsonLines),
+            "npz" => Ok(Kind::Npz),
+            _ => bail!(
+                "{}: the name must end with .csv, .jsonl or .npz; `phalanx convert` writes other formats",
+                out.display()
+            ),
+        }
+    }
+
+    /// The hand to begin with.
+    pub(super) fn settings(&self) -> Result<TakeSettings> {
+        let side = Side::from(self.side);
+        let Some(path) = &self.hand else {
+            let hand = HandShape { side, ..HandShape::adult() };
+            return Ok(TakeSettings { hand, proportions: Proportions::FromTake });
+        };
+        let hand = input::hand(path)?;
+        ensure!(hand.side == side, "{}: it is the other hand; see --side", path.display());
+        Ok(TakeSettings { hand, proportions: Proportions::Given })
+    }
+
+    /// How many moments are fitted together at most.
+    pub(super) fn fitted_together(&self) -> usize {
+        if self.whole_take { usize::MAX } else { self.fit_together.get() }
+    }
+}

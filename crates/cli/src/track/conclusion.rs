@@ -1,0 +1,57 @@
+//! How a run went.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::{Result, ensure};
+use phalanx_hand::HandShape;
+use phalanx_io::take::TakeFrame;
+use serde::{Deserialize, Serialize};
+
+/// So many of the pictures that could not be read are named.
+const NAMED: usize = 20;
+
+/// Counts of frames.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(super) struct Tally {
+    frames: usize,
+    with_hand: usize,
+    doubted: usize,
+    failures: usize,
+    named: Vec<String>,
+}
+
+impl Tally {
+    /// Counts a frame.
+    pub(super) fn add(&mut self, frame: &TakeFrame) {
+        self.frames += 1;
+        self.with_hand += usize::from(frame.estimate.is_some());
+        self.doubted += usize::from(!frame.doubts.is_empty());
+    }
+
+    /// Counts pictures that could not be read, each in words.
+    pub(super) fn add_failures(&mut self, failures: Vec<String>) {
+        self.failures += failures.len();
+        let room = NAMED - self.named.len();
+        self.named.extend(failures.into_iter().take(room));
+    }
+
+    /// Says how it went, of a take that is written; pictures that could not be read make another exit code.
+    pub(super) fn conclude(&self, hand: &HandShape, out: &Path) -> Result<ExitCode> {
+        let Self { frames, with_hand, doubted, failures, named } = self;
+        for failure in named {
+            eprintln!("phalanx: {failure}");
+        }
+        if *failures > named.len() {
+            eprintln!("phalanx: and {} more", failures - named.len());
+        }
+        ensure!(*with_hand > 0, "no frame shows a hand");
+        eprintln!(
+            "phalanx: {with_hand} of {frames} frames show the hand, {doubted} are doubted (column `doubts`); the \
+             hand is {:.0} mm long; {}",
+            hand.length_mm(),
+            out.display()
+        );
+        Ok(if *failures == 0 { ExitCode::SUCCESS } else { ExitCode::from(1) })
+    }
+}

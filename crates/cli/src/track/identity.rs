@@ -1,0 +1,124 @@
+//! What a run is made of: only the same may go on from what was broken off.
+
+use std::fs::{File, Metadata};
+use std::io::Read;
+use std::path::Path;
+use std::time::UNIX_EPOCH;
+
+use anyhow::{Context, Result};
+use clap::ValueEnum;
+use phalanx::Maker;
+use serde::{Deserialize, Serialize};
+
+use super::arguments::Arguments;
+use crate::recording::pictures::is_picture;
+use crate::recording::source::Source;
+
+/// So much of a recording is read to tell it from another, bytes; its size and the time of its last change
+/// tell the rest.
+const BEGINNING: u64 = 64 << 10;
+
+/// Everything that decides the output, by name.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Identity(Vec<(String, String)>);
+
+impl Identity {
+    pub(super) fn of(arguments: &Arguments, source: &Source) -> Result<Self> {
+        let mut parts = vec![
+            ("the program".to_owned(), Maker::here().to_string()),
+            ("the kind of output".to_owned(), format!("{:?}", arguments.kind()?)),
+        ];
+        let side = arguments.side.to_possible_value();
+        let side = side.map_or_else(String::new, |side| side.get_name().to_owned());
+        let rate = arguments.rate.map_or_else(|| "not given".to_owned(), |rate| rate.to_string());
+        let segment = &arguments.recording.segment;
+        for (name, value) in [
+            ("--side", side),
+            ("--rate", rate),
+            ("--fit-together", arguments.fitted_together().to_string()),
+            ("--mask, --segment", segment.given()),
+        ] {
+            parts.push((name.to_owned(), value));
+        }
+        let files = [
+            ("--rig", Some(&arguments.rig)),
+            ("--hand", arguments.hand.as_ref()),
+            ("--timestamps", arguments.recording.timestamps.as_ref()),
+            ("the file of --segment", segment.segment.as_ref()),
+        ];
+        for (name, path) in files {
+            let content = path.map_or_else(|| Ok("not given".to_owned()), |path| content(path))?;
+            parts.push((name.to_owned(), content));
+        }
+        for (camera, path) in source.recordings() {
+            let recording = recording(path).with_context(|| path.display().to_string())?;
+            parts.push((format!("the recording of camera '{}'", camera.name), recording));
+        }
+        Ok(Self(parts))
+    }
+
+    /// The first thing in which another one differs, in words.
+    pub(super) fn difference(&self, other: &Self) -> Option<String> {
+        let Self(own) = self;
+        let of = |name: &String| {
+            let found = other.0.iter().find(|(found, _)| found == name);
+            found.map_or("absent", |(_, value)| value)
+        };
+        let differs = own.iter().find(|(name, value)| of(name) != value);
+        let (name, value) = match differs {
+            Some((name, value)) => (name, value.as_str()),
+            None => {
+                other.0.iter().find(|pair| !own.contains(pair)).map(|(name, _)| (name, "absent"))?
+            }
+        };
+        Some(format!("{name} is {value}, and was {}", of(name)))
+    }
+}
+
+/// A small file by its content. What is no file, such as a pipe, can be read once only.
+fn content(path: &Path) -> Result<String> {
+    let read = || -> std::io::Result<String> {
+        if !path.is_file() {
+            return Ok("no file".to_owned());
+        }
+        let bytes = std::fs::read(path)?;
+        Ok(format!("of {} bytes with checksum {:08x}", bytes.len(), crc32fast::hash(&bytes)))
+    };
+    read().with_context(|| path.display().to_string())
+}
+
+/// A recording by sizes and times of change.
+fn recording(path: &Path) -> Result<String> {
+    let metadata = std::fs::metadata(path)?;
+    if metadata.is_dir() {
+        return folder(path);
+    }
+    let mut beginning = Vec::new();
+    if metadata.is_file() {
+        File::open(path)?.take(BEGINNING).read_to_end(&mut beginning)?;
+    }
+    let checksum = crc32fast::hash(&beginning);
+    Ok(format!("{} with checksum {checksum:08x}", size_and_time(&metadata)?))
+}
+
+/// A folder by those of its pictures, in any order: results may be written beside them.
+fn folder(path: &Path) -> Result<String> {
+    let (mut count, mut sum) = (0_u64, 0_u64);
+    for entry in std::fs::read_dir(path)? {
+        let entry = entry?;
+        if !is_picture(&entry.path()) {
+            continue;
+        }
+        let own = size_and_time(&std::fs::metadata(entry.path())?)?;
+        let own = format!("{}: {own}", entry.file_name().to_string_lossy());
+        count += 1;
+        sum = sum.wrapping_add(u64::from(crc32fast::hash(own.as_bytes())));
+    }
+    Ok(format!("of {count} pictures with checksum {sum:x}"))
+}
+
+fn size_and_time(metadata: &Metadata) -> Result<String> {
+    let changed = metadata.modified()?.duration_since(UNIX_EPOCH).unwrap_or_default();
+    let (seconds, rest) = (changed.as_secs(), changed.subsec_nanos());
+    Ok(format!("of {} bytes, changed at {seconds}.{rest:09} s", metadata.len()))
+}

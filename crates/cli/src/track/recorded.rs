@@ -1,0 +1,84 @@
+//! A recording that is being tracked: its cameras, moments and times.
+
+use anyhow::Result;
+use glam::DAffine3;
+use phalanx::{FrameFit, TakeFit, TakeSettings, fit_take};
+use phalanx_hand::HandShape;
+use phalanx_io::take::{TakeFrame, TakeHeader};
+
+use super::take;
+use crate::progress::Bar;
+use crate::recording::reader::Reader;
+use crate::recording::source::Source;
+use crate::recording::timeline::Timeline;
+
+/// The rate that is assumed where frames have no times, Hz.
+const USUAL_RATE: f64 = 30.0;
+
+pub(super) struct Recorded<'a> {
+    pub(super) source: &'a Source,
+    pub(super) reader: Reader<'a>,
+    /// When each moment was, seconds: by the cameras' clocks or, where they have none, by the rate.
+    pub(super) times: Vec<f64>,
+    /// The rate, where the cameras have no clocks.
+    rate: Option<f64>,
+}
+
+impl<'a> Recorded<'a> {
+    /// Opens a recording; `rate` is that of pictures without times, Hz.
+    pub(super) fn open(source: &'a Source, rate: Option<f64>) -> Result<Self> {
+        let reader = source.reader()?;
+        let moments = reader.moments();
+        let clock: Option<Vec<f64>> = moments.iter().map(|moment| moment.time).collect();
+        let rate = clock.is_none().then(|| rate.unwrap_or(USUAL_RATE));
+        let by_rate = |rate: f64| (0..moments.len()).map(|k| k as f64 / rate).collect();
+        let times = clock.unwrap_or_else(|| by_rate(rate.unwrap_or(USUAL_RATE)));
+        Ok(Self { source, reader, times, rate })
+    }
+
+    /// Fits some moments together, evenly spread; what cannot be read is noted.
+    pub(super) fn fit(
+        &mut self,
+        most: usize,
+        settings: &TakeSettings,
+        bar: &Bar,
+        failures: &mut Vec<String>,
+    ) -> Result<TakeFit> {
+        let frames = self.reader.read_some(most, failures);
+        Ok(fit_take(&self.source.cameras, &frames, settings, bar)?)
+    }
+
+    /// Reads from the beginning again.
+    pub(super) fn rewind(&mut self) -> Result<()> {
+        self.reader = self.source.reader()?;
+        Ok(())
+    }
+
+    /// What is said of all frames.
+    pub(super) fn header(&self, hand: &HandShape, rest: DAffine3) -> TakeHeader {
+        take::header(&self.source.cameras, (hand, rest), self.rate)
+    }
+
+    /// What is said of a moment.
+    pub(super) fn frame(&self, moment: usize, fit: Option<&FrameFit>) -> TakeFrame {
+        let Self { source, reader, times, .. } = self;
+        let place = (moment, &reader.moments()[moment]);
+        take::frame(&source.cameras, place, times[moment], fit)
+    }
+
+    /// Says what was found.
+    pub(super) fn tell(&self) {
+        let (cameras, timeline) = (&self.source.cameras, &self.reader.timeline);
+        let Timeline { moments, missing, unmatched } = timeline;
+        eprintln!("phalanx: {} moments by {} cameras", moments.len(), cameras.len());
+        for (camera, (missing, unmatched)) in cameras.iter().zip(missing.iter().zip(unmatched)) {
+            if missing + unmatched > 0 {
+                eprintln!(
+                    "phalanx: camera '{}' has no frame at {missing} moments; {unmatched} of its frames belong to \
+                     none",
+                    camera.name
+                );
+            }
+        }
+    }
+}
