@@ -20,8 +20,9 @@ pub(crate) struct Arguments {
     /// The take: .csv, .jsonl or .npz.
     #[arg(value_name = "TAKE")]
     take: PathBuf,
-    /// What another instrument says: .csv with columns named as a take's, .trc with the joints as
-    /// markers, or .mot with columns named by phalanx, OpenSim's ARMS hand or myoHand.
+    /// What another instrument says: .csv with columns named as a take's or with a row a joint (frame or time,
+    /// joint, x, y, z), .trc with the joints as markers, .mot with columns named by phalanx, OpenSim's ARMS hand or
+    /// myoHand, or another take as .jsonl or .npz.
     #[arg(long, value_name = "FILE")]
     reference: PathBuf,
     /// Take the lag that is found from the take's times before comparing.
@@ -54,7 +55,8 @@ fn reference(path: &Path) -> Result<Reference> {
             "csv" => Ok(read_csv(std::fs::File::open(path)?)?),
             "trc" => Ok(read_trc(&std::fs::read_to_string(path)?)?),
             "mot" | "sto" => Ok(read_motion_file(&std::fs::read_to_string(path)?)?),
-            _ => bail!("a reference's name ends with .csv, .trc or .mot"),
+            "jsonl" | "npz" => Ok(Reference::from(&take_file::read(path)?)),
+            _ => bail!("a reference's name ends with .csv, .trc, .mot, .sto, .jsonl or .npz"),
         }
     };
     read().with_context(|| path.display().to_string())

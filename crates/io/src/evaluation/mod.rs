@@ -2,8 +2,10 @@
 
 mod lag;
 mod reference;
+mod reference_csv;
 mod scores;
 
 pub use lag::{Lag, lag};
-pub use reference::{Clock, Reference, read_csv, read_motion_file, read_trc};
+pub use reference::{Clock, Reference, read_motion_file, read_trc};
+pub use reference_csv::read_csv;
 pub use scores::{Evaluation, LEVELS, Scores, evaluate};

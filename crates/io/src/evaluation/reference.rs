@@ -1,13 +1,11 @@
 //! References: what another instrument, or the hand that was drawn, says of the same motion.
 
-use std::io::Read;
-
 use glam::DVec3;
 use phalanx_hand::{Dof, JOINTS};
 
 use crate::error::{Error, Result};
 use crate::export::{Coordinate, CoordinateNames};
-use crate::take::JOINT_NAMES;
+use crate::take::{JOINT_NAMES, Take};
 
 /// Angles or joints over time; NaN where there is nothing.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,19 +29,33 @@ pub enum Clock {
     Frame,
 }
 
+impl From<&Take> for Reference {
+    /// A take as what another is compared with, by their times.
+    fn from(take: &Take) -> Self {
+        let mut reference = Self::new(Clock::Time);
+        for frame in &take.frames {
+            let estimate = frame.estimate.as_ref();
+            reference.instants.push(frame.time);
+            reference.poses.push(estimate.map_or([f64::NAN; Dof::COUNT], |found| found.pose.0));
+            reference.joints.push(estimate.map_or([DVec3::NAN; JOINTS], |found| found.joints));
+        }
+        reference
+    }
+}
+
 /// A number of a pose, or a joint's along an axis, with what the file's numbers are multiplied by.
 #[derive(Debug, Clone, Copy)]
-enum Entry {
+pub(super) enum Entry {
     Dof(Dof, f64),
     Joint(usize, usize, f64),
 }
 
 impl Reference {
-    fn new(clock: Clock) -> Self {
+    pub(super) fn new(clock: Clock) -> Self {
         Self { clock, instants: Vec::new(), poses: Vec::new(), joints: Vec::new() }
     }
 
-    fn push(&mut self, instant: f64, entries: impl Iterator<Item = (Entry, f64)>) {
+    pub(super) fn push(&mut self, instant: f64, entries: impl Iterator<Item = (Entry, f64)>) {
         let mut pose = [f64::NAN; Dof::COUNT];
         let mut joints = [DVec3::NAN; JOINTS];
         for (entry, value) in entries {
@@ -58,7 +70,7 @@ impl Reference {
     }
 
     /// Refuses what cannot be compared.
-    fn checked(self) -> Result<Self> {
+    pub(super) fn checked(self) -> Result<Self> {
         let instants = &self.instants;
         if instants.is_empty() {
             return Err(problem("it has no row"));
@@ -72,56 +84,11 @@ impl Reference {
     }
 }
 
-fn problem(what: impl Into<String>) -> Error {
+pub(super) fn problem(what: impl Into<String>) -> Error {
     Error::Reference { what: what.into() }
 }
 
-/// The entry that a column of a CSV file names.
-fn csv_entry(name: &str) -> Option<Entry> {
-    if let Ok(dof) = name.parse() {
-        return Some(Entry::Dof(dof, 1.0));
-    }
-    let (joint, axis) = name.rsplit_once('_')?;
-    let axis = ["x", "y", "z"].iter().position(|other| *other == axis)?;
-    let joint = JOINT_NAMES.iter().position(|other| *other == joint)?;
-    Some(Entry::Joint(joint, axis, 1.0))
-}
-
-/// Reads a CSV file with a column `time` (s) or `frame`, and any of the 28 numbers and of the
-/// joints' coordinates by the names of a take's CSV; an empty cell is no number.
-///
-/// # Errors
-/// Malformed CSV, no column of a time or number, a cell that is none, times that do not ascend.
-pub fn read_csv(reader: impl Read) -> Result<Reference> {
-    let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(reader);
-    let names = csv.headers().map_err(|error| problem(error.to_string()))?.clone();
-    let column = |name: &str| names.iter().position(|other| other == name);
-    let (clock, instant) = match (column("time"), column("frame")) {
-        (Some(time), _) => (Clock::Time, time),
-        (None, Some(frame)) => (Clock::Frame, frame),
-        (None, None) => return Err(problem("it has neither a column 'time' nor 'frame'")),
-    };
-    let entries: Vec<(usize, Entry)> = names
-        .iter()
-        .enumerate()
-        .filter_map(|(column, name)| Some((column, csv_entry(name)?)))
-        .collect();
-    if entries.is_empty() {
-        return Err(problem("it has no column of an angle or a joint, such as 'index.pip'"));
-    }
-    let mut reference = Reference::new(clock);
-    for record in csv.records() {
-        let record = record.map_err(|error| problem(error.to_string()))?;
-        let cells: Vec<(Entry, f64)> = entries
-            .iter()
-            .map(|&(column, entry)| Ok((entry, number(&record[column])?)))
-            .collect::<Result<_>>()?;
-        reference.push(number(&record[instant])?, cells.into_iter());
-    }
-    reference.checked()
-}
-
-fn number(text: &str) -> Result<f64> {
+pub(super) fn number(text: &str) -> Result<f64> {
     if text.is_empty() {
         return Ok(f64::NAN);
     }

@@ -165,6 +165,29 @@ fn references_that_are_none_are_refused_with_what_to_do() {
     let steady = read_csv(("time,index.pip\n".to_owned() + &steady).as_bytes()).unwrap();
     assert!(lag(&take(), &steady).is_none(), "a steady motion has no lag");
     assert_eq!(evaluate(&take(), &by_frame, 0.0).matched, 1);
+    assert!(csv("frame,joint,x_mm,y_mm\n0,0,1,2\n").contains("no columns x, y, z"));
+    assert!(csv("frame,joint,x,y,z\n0,21,1,2,3\n").contains("'21' is no joint"));
+    assert!(csv("frame,joint,x,y,z\n0,8,1,2,3\n0,index_tip,1,2,3\n").contains("stands twice"));
     let sto = deviation_file(&take(), CoordinateNames::Phalanx, LengthUnit::Millimetre).unwrap();
     assert!(read_motion_file(&sto).is_ok());
+}
+
+/// A row a joint says what a row an instant says: by name or number, mm or m, in any order.
+#[test]
+fn a_reference_may_have_a_row_a_joint() {
+    let wide = "frame,wrist_x,wrist_y,wrist_z,index_tip_x,index_tip_y,index_tip_z\n\
+                0,1,2,3,4,5,6\n2,7,8,9,,,\n";
+    let wide = read_csv(wide.as_bytes()).unwrap();
+    for long in [
+        "frame,joint,x_mm,y_mm,z_mm\n0,0,1,2,3\n0,8,4,5,6\n2,0,7,8,9\n",
+        "joint,x,y,z,frame\nindex_tip,4,5,6,0\nwrist,7,8,9,2\nwrist,1,2,3,0\n",
+        "frame,joint,x_m,y_m,z_m\n0,0,0.001,0.002,0.003\n2,0,0.007,0.008,0.009\n0,8,0.004,0.005,0.006\n",
+    ] {
+        let long = read_csv(long.as_bytes()).unwrap();
+        assert_eq!((long.clock, &long.instants), (Clock::Frame, &wide.instants));
+        for (long, wide) in long.joints.iter().flatten().zip(wide.joints.iter().flatten()) {
+            let is_same = long.distance(*wide) < 1e-9 || long.is_nan() && wide.is_nan();
+            assert!(is_same, "{long} {wide}");
+        }
+    }
 }
