@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Result, ensure};
 use phalanx_hand::HandShape;
-use phalanx_io::take::TakeFrame;
+use phalanx_io::take::{FrameView, TakeFrame};
 use serde::{Deserialize, Serialize};
 
 /// So many of the pictures that could not be read are named.
@@ -17,6 +17,8 @@ pub(super) struct Tally {
     frames: usize,
     with_hand: usize,
     doubted: usize,
+    /// Without one of the views or more.
+    with_fewer: usize,
     failures: usize,
     named: Vec<String>,
 }
@@ -27,6 +29,8 @@ impl Tally {
         self.frames += 1;
         self.with_hand += usize::from(frame.estimate.is_some());
         self.doubted += usize::from(!frame.doubts.is_empty());
+        let is_left_out = |view: &FrameView| view.left_out.is_some();
+        self.with_fewer += usize::from(frame.views.iter().any(is_left_out));
     }
 
     /// Counts pictures that could not be read, each in words.
@@ -38,7 +42,7 @@ impl Tally {
 
     /// Says how it went, of a take that is written; pictures that could not be read make another exit code.
     pub(super) fn conclude(&self, hand: &HandShape, out: &Path) -> Result<ExitCode> {
-        let Self { frames, with_hand, doubted, failures, named } = self;
+        let Self { frames, with_hand, doubted, with_fewer, failures, named } = self;
         for failure in named {
             eprintln!("phalanx: {failure}");
         }
@@ -46,6 +50,9 @@ impl Tally {
             eprintln!("phalanx: and {} more", failures - named.len());
         }
         ensure!(*with_hand > 0, "no frame shows a hand");
+        if *with_fewer > 0 {
+            eprintln!("phalanx: in {with_fewer} frames a view was left out (column `left_out`)");
+        }
         eprintln!(
             "phalanx: {with_hand} of {frames} frames show the hand, {doubted} are doubted (column `doubts`); the \
              hand is {:.0} mm long; {}",

@@ -4,7 +4,7 @@ use glam::DAffine3;
 use phalanx::{FitDoubt, FrameFit, Missing};
 use phalanx_camera::Camera;
 use phalanx_hand::HandShape;
-use phalanx_io::take::{FrameView, PoseEstimate, TakeFrame, TakeHeader};
+use phalanx_io::take::{FrameView, LeftOut, PoseEstimate, TakeFrame, TakeHeader};
 
 use crate::recording::timeline::Moment;
 
@@ -47,28 +47,27 @@ pub(crate) fn frame(
         joints: fit.joints,
         joint_std: joint_std.iter().all(|std| std.is_finite()).then_some(joint_std),
     };
-    let views = fit
-        .views
-        .iter()
-        .map(|view| FrameView { used: view.missing.is_none(), overlap: view.overlap });
-    let mut doubts: Vec<String> = fit.doubts.iter().map(|doubt| code(doubt, cameras)).collect();
-    for (view, camera) in fit.views.iter().zip(cameras) {
-        if view.missing == Some(Missing::Disagrees) {
-            doubts.push(format!("view-disagrees:{}", camera.name));
-        }
-    }
-    let absent = moment.frames.iter().zip(&fit.views).zip(cameras);
-    for ((picture, view), camera) in absent {
-        if picture.is_some() && view.missing == Some(Missing::NoHand) {
-            doubts.push(format!("view-shows-no-hand:{}", camera.name));
-        }
-    }
+    let views = fit.views.iter().zip(&moment.frames).map(|(view, picture)| FrameView {
+        used: view.missing.is_none(),
+        overlap: view.overlap,
+        left_out: picture.and(view.missing).and_then(left_out),
+    });
+    let doubts = fit.doubts.iter().map(|doubt| code(doubt, cameras)).collect();
     TakeFrame {
         index: index as u64,
         time,
         estimate: Some(estimate),
         views: views.collect(),
         doubts,
+    }
+}
+
+/// Why a picture that is there had no part.
+fn left_out(missing: Missing) -> Option<LeftOut> {
+    match missing {
+        Missing::Disagrees => Some(LeftOut::Disagrees),
+        Missing::NoHand => Some(LeftOut::NoHand),
+        _ => None,
     }
 }
 

@@ -26,7 +26,7 @@ impl Folder {
             index: k,
             time: k as f64 / 30.0,
             estimate: Some(header.estimate(closing(closed(k)), [Some(0.02); Dof::COUNT])),
-            views: vec![FrameView { used: true, overlap: Some(0.9) }],
+            views: vec![FrameView { used: true, overlap: Some(0.9), left_out: None }],
             doubts: if k == 29 { vec!["low-overlap".to_owned()] } else { vec![] },
         };
         let take = Take { frames: (0..30).map(frame).collect(), header };
@@ -128,8 +128,10 @@ fn json_is_printed_where_text_is() {
 #[test]
 fn a_take_agrees_with_itself() {
     let folder = Folder::new();
-    folder.printed(&["convert", "take.csv", "--out", "reference.trc"]);
-    for reference in ["take.csv", "reference.trc"] {
+    for name in ["reference.trc", "reference.jsonl", "reference.npz"] {
+        folder.printed(&["convert", "take.csv", "--out", name]);
+    }
+    for reference in ["take.csv", "reference.trc", "reference.jsonl", "reference.npz"] {
         let text = folder.printed(&["evaluate", "take.csv", "--reference", reference]);
         assert!(text.contains("30 frames compared, 0 without"), "{text}");
         assert!(text.contains("0.0 ms late"), "{text}");
@@ -152,5 +154,5 @@ fn wrong_use_is_refused_with_what_to_do() {
     says(&["convert", "take.csv", "--out", "t.glb", "--unit", "mm"], "glTF has lengths in m");
     says(&["view", "take.csv", "--out", "take.pdf"], "the page is HTML");
     says(&["report", "take.csv", "--out", "take.pdf"], "must end with .csv or .html");
-    says(&["evaluate", "take.csv", "--reference", "x.c3d"], "ends with .csv, .trc or .mot");
+    says(&["evaluate", "take.csv", "--reference", "x.c3d"], "ends with .csv, .trc, .mot");
 }

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use crate::error::{Error, Result};
 use crate::model::{Skeleton, Skin};
 use crate::report::{FrameChoice, NamedRange, RangeOfMotion, Table, range_table, short};
-use crate::take::{Take, TakeFrame};
+use crate::take::{FrameView, LeftOut, Take, TakeFrame};
 
 /// A page with more frames would be more than browsers bear.
 pub const MOST_FRAMES: usize = 20_000;
@@ -75,7 +75,9 @@ pub(super) fn of(take: &Take, pictures: &[ViewPictures]) -> Result<Value> {
         })),
         "quality": reals(frames.iter().map(|frame| frame.quality())),
         "overlap": reals(overlaps.clone().map(|view| view.overlap)),
-        "used": base64(overlaps.map(|view| [u8::from(view.used)])),
+        "used": base64(overlaps.clone().map(|view| [u8::from(view.used)])),
+        "leftOut": base64(overlaps.map(|view| [left_out(view)])),
+        "leftOutCodes": LeftOut::ALL.map(LeftOut::code),
         "doubtFrames": base64(doubts.iter().map(|(frame, _)| frame.to_le_bytes())),
         "doubtCodes": base64(doubts.iter().map(|(_, code)| code.to_le_bytes())),
         "skeleton": skeleton(&Skeleton::new(&take.header.hand)),
@@ -83,6 +85,12 @@ pub(super) fn of(take: &Take, pictures: &[ViewPictures]) -> Result<Value> {
         "pictures": pictures.collect::<Result<Vec<_>>>()?,
         "range": range(take),
     }))
+}
+
+/// Why a view was left out, counted from 1; 0 of one that was not.
+fn left_out(view: &FrameView) -> u8 {
+    let number = |why| LeftOut::ALL.iter().zip(1..).find(|(own, _)| **own == why);
+    view.left_out.and_then(number).map_or(0, |(_, number)| number)
 }
 
 fn unit(dof: Dof) -> &'static str {

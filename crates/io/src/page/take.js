@@ -14,6 +14,12 @@ function readTake() {
   take.index = new Float64Array(bytes(data.index));
   for (const name of ["pose", "std", "quality", "overlap"]) take[name] = new Float32Array(bytes(data[name]));
   take.used = new Uint8Array(bytes(data.used));
+  const leftOut = new Uint8Array(bytes(data.leftOut));
+  // The views that a frame does without, each with the reason.
+  take.without = (frame) => take.views.flatMap((name, view) => {
+    const code = leftOut[take.views.length * frame + view];
+    return code ? [`${name} (${data.leftOutCodes[code - 1]})`] : [];
+  });
   const [frames, codes] = [new Uint32Array(bytes(data.doubtFrames)), new Uint32Array(bytes(data.doubtCodes))];
   take.doubts = new Map();
   frames.forEach((frame, k) => {

@@ -18,6 +18,8 @@ function describe(frame) {
   const parts = [`frame ${take.index[frame]}`, `${take.time[frame].toFixed(3)} s`];
   if (!take.found(frame)) parts.push("no hand");
   if (Number.isFinite(take.quality[frame])) parts.push(`quality ${take.quality[frame].toFixed(2)}`);
+  const without = take.without(frame);
+  if (without.length) parts.push(`without ${without.join(", ")}`);
   return [parts.join(" · "), doubts ? `doubted: ${doubts.join(", ")}` : ""];
 }
 

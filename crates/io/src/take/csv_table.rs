@@ -11,7 +11,9 @@ use phalanx_hand::{Dof, JOINTS, Pose};
 
 use crate::error::unwritten;
 use crate::error::{Error, Result};
-use crate::take::frames::{FrameView, JOINT_NAMES, PoseEstimate, Take, TakeFrame, TakeHeader};
+use crate::take::frames::{
+    FrameView, JOINT_NAMES, LeftOut, PoseEstimate, Take, TakeFrame, TakeHeader,
+};
 use crate::take::header;
 use crate::take::validate::{FrameOrder, SEPARATOR};
 
@@ -21,6 +23,8 @@ const HEADER: &str = "take";
 const STD: &str = "_std";
 /// What the name of a view's overlap begins with.
 const OVERLAP: &str = "overlap_";
+/// The column of views that were left out, each as `NAME:why`. Older files have none.
+const LEFT_OUT: &str = "left_out";
 /// The ends of the names of a joint's three columns.
 const AXES: [&str; 3] = ["_x", "_y", "_z"];
 
@@ -35,8 +39,8 @@ pub struct CsvWriter<W: Write> {
 
 impl<W: Write> CsvWriter<W> {
     /// Writes the names of the columns: `frame`, `time`, the 28 numbers and the 21 joints with
-    /// their deviations, `quality`, the views' overlaps, the `views` that were used, the `doubts`,
-    /// and the header.
+    /// their deviations, `quality`, the views' overlaps, the `views` that were used and those that were
+    /// `left_out`, the `doubts`, and the header.
     ///
     /// # Errors
     /// A header that does not keep to [`Take::validate`]; what the writer reports.
@@ -97,7 +101,7 @@ fn column_names(header: &TakeHeader) -> Vec<String> {
     }
     names.push("quality".to_owned());
     names.extend(header.views.iter().map(|view| format!("{OVERLAP}{view}")));
-    names.extend(["views", "doubts", HEADER].map(str::to_owned));
+    names.extend(["views", LEFT_OUT, "doubts", HEADER].map(str::to_owned));
     names
 }
 
@@ -124,6 +128,10 @@ fn frame_cells(header: &TakeHeader, frame: &TakeFrame, meta: String) -> Vec<Stri
     let used = header.views.iter().zip(&frame.views).filter(|(_, view)| view.used);
     let separator = SEPARATOR.to_string();
     cells.push(used.map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(&separator));
+    let left_out = header.views.iter().zip(&frame.views);
+    let left_out = left_out.filter_map(|(name, view)| Some((name, view.left_out?)));
+    let left_out = left_out.map(|(name, why)| format!("{name}:{}", why.code()));
+    cells.push(left_out.collect::<Vec<_>>().join(&separator));
     cells.push(frame.doubts.join(&separator));
     cells.push(meta);
     cells
@@ -196,6 +204,7 @@ struct Layout<'a> {
     joints: Vec<[usize; 2]>,
     overlaps: Vec<usize>,
     views: usize,
+    left_out: Option<usize>,
     doubts: usize,
 }
 
@@ -210,6 +219,7 @@ impl<'a> Layout<'a> {
             joints: joint_columns().map(|name| columns.pair(&name)).collect::<Result<_>>()?,
             overlaps: overlaps.collect::<Result<_>>()?,
             views: columns.find("views")?,
+            left_out: columns.find(LEFT_OUT).ok(),
             doubts: columns.find("doubts")?,
         })
     }
@@ -220,8 +230,11 @@ impl<'a> Layout<'a> {
         if let Some(name) = used.iter().find(|name| !self.names.iter().any(|view| view == *name)) {
             return Err(row.problem(format!("no view is named '{name}'")));
         }
+        let left_out = self.left_out(row)?;
         let views = self.names.iter().zip(&self.overlaps).map(|(name, &column)| {
-            Ok(FrameView { used: used.contains(&name.as_str()), overlap: row.number(column)? })
+            let name = name.as_str();
+            let (used, left_out) = (used.contains(&name), left_out.get(name).copied());
+            Ok(FrameView { used, overlap: row.number(column)?, left_out })
         });
         Ok(TakeFrame {
             index: index.map_err(|_| row.problem("the frame is no whole number".to_owned()))?,
@@ -230,6 +243,19 @@ impl<'a> Layout<'a> {
             views: views.collect::<Result<_>>()?,
             doubts: row.list(self.doubts).into_iter().map(str::to_owned).collect(),
         })
+    }
+
+    /// The views that were left out, and why.
+    fn left_out<'r>(&self, row: &Row<'r>) -> Result<BTreeMap<&'r str, LeftOut>> {
+        let entry = |entry: &'r str| {
+            let known = entry.rsplit_once(':').and_then(|(name, code)| {
+                let name = self.names.iter().any(|view| view == name).then_some(name)?;
+                Some((name, LeftOut::of_code(code)?))
+            });
+            known.ok_or_else(|| row.problem(format!("'{entry}' is no view that was left out")))
+        };
+        let cell = self.left_out.map(|column| row.list(column)).unwrap_or_default();
+        cell.into_iter().map(entry).collect()
     }
 
     /// The pose, unless the cell of its first number is empty.

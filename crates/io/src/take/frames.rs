@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 use phalanx_hand::{Bone, Digit, Dof, HandShape, JOINTS, Pose, PosedHand};
+use serde::{Deserialize, Serialize};
 
 /// The version of all three forms; a reader refuses a newer one by name.
 pub const FORMAT_VERSION: u32 = 1;
@@ -93,6 +94,37 @@ pub struct FrameView {
     /// How well the estimated hand, drawn again, covers the silhouette that was seen:
     /// intersection over union, 0 to 1.
     pub overlap: Option<f64>,
+    /// Why a picture that is there had none; the estimate is that of the others, and not in doubt for it.
+    pub left_out: Option<LeftOut>,
+}
+
+/// Why a camera's picture had no part in an estimate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum LeftOut {
+    /// It contradicts the others.
+    Disagrees,
+    /// It shows nothing where the others see the hand.
+    NoHand,
+}
+
+impl LeftOut {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Disagrees, Self::NoHand];
+
+    /// Its name in files.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Disagrees => "disagrees",
+            Self::NoHand => "no-hand",
+        }
+    }
+
+    /// The one of this name.
+    pub(super) fn of_code(code: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|reason| reason.code() == code)
+    }
 }
 
 impl TakeHeader {

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::unwritten;
 use crate::error::{Error, Result};
 use crate::take::by_name::{ByDof, ByJoint};
-use crate::take::frames::{FrameView, PoseEstimate, Take, TakeFrame, TakeHeader};
+use crate::take::frames::{FrameView, LeftOut, PoseEstimate, Take, TakeFrame, TakeHeader};
 use crate::take::header;
 use crate::take::validate::FrameOrder;
 
@@ -35,6 +35,8 @@ struct ViewLine {
     view: String,
     used: bool,
     overlap: Option<f64>,
+    #[serde(default)]
+    left_out: Option<LeftOut>,
 }
 
 /// Writes the frames of a take as they come, by the schema of [`json_schema`](super::json_schema).
@@ -130,6 +132,7 @@ impl FrameLine {
             view: name.clone(),
             used: view.used,
             overlap: view.overlap.map(rounded),
+            left_out: view.left_out,
         });
         Self {
             frame: frame.index,
@@ -149,7 +152,7 @@ impl FrameLine {
         let views = header.views.iter().map(|name| {
             let line = self.views.iter().find(|line| line.view == *name);
             let line = line.ok_or_else(|| format!("the view '{name}' is absent"))?;
-            Ok(FrameView { used: line.used, overlap: line.overlap })
+            Ok(FrameView { used: line.used, overlap: line.overlap, left_out: line.left_out })
         });
         let views = views.collect::<std::result::Result<Vec<_>, String>>()?;
         if self.views.len() != views.len() {

@@ -16,7 +16,7 @@ mod validate;
 
 pub use csv_table::{CsvWriter, read_csv, write_csv};
 pub use frames::{
-    FORMAT_VERSION, FrameView, JOINT_NAMES, PoseEstimate, Take, TakeFrame, TakeHeader,
+    FORMAT_VERSION, FrameView, JOINT_NAMES, LeftOut, PoseEstimate, Take, TakeFrame, TakeHeader,
 };
 pub use json_lines::{JsonLinesWriter, read_json_lines, write_json_lines};
 pub use npz::{read_npz, write_npz};

@@ -6,7 +6,9 @@ use glam::DVec3;
 use phalanx_hand::{Dof, JOINTS, Pose};
 
 use crate::error::{Error, Result};
-use crate::take::frames::{FrameView, JOINT_NAMES, PoseEstimate, Take, TakeFrame, TakeHeader};
+use crate::take::frames::{
+    FrameView, JOINT_NAMES, LeftOut, PoseEstimate, Take, TakeFrame, TakeHeader,
+};
 use crate::take::header;
 use crate::take::npy::{Array, Data};
 use crate::take::stored_zip;
@@ -22,7 +24,7 @@ const MOST_CODES: usize = 1000;
 /// | `frame`, `time`, `found` | n | whether there is a pose |
 /// | `pose`, `pose_std` | n × 28 | by `dof_names` |
 /// | `joints`, `joints_std` | n × 21 × 3 | by `joint_names` |
-/// | `used`, `overlap` | n × v | by `view_names` |
+/// | `used`, `overlap`, `left_out` | n × v | by `view_names`; why a view was left out, or nothing |
 /// | `doubted` | n × d | by `doubt_codes` |
 /// | `header` | – | the header as JSON |
 ///
@@ -48,6 +50,8 @@ fn frame_arrays(take: &Take, codes: &[&str]) -> Vec<(&'static str, Array)> {
     let index = take.frames.iter().map(|frame| i64::try_from(frame.index).unwrap_or(i64::MAX));
     let overlaps = take.frames.iter().flat_map(|frame| &frame.views);
     let overlaps = overlaps.map(|view| view.overlap.unwrap_or(f64::NAN)).collect();
+    let left_out = take.frames.iter().flat_map(|frame| &frame.views);
+    let left_out = left_out.map(|view| view.left_out.map_or("", LeftOut::code));
     let doubted = |frame: &TakeFrame| {
         codes.iter().map(|&code| frame.doubts.iter().any(|doubt| doubt == code)).collect()
     };
@@ -67,6 +71,7 @@ fn frame_arrays(take: &Take, codes: &[&str]) -> Vec<(&'static str, Array)> {
         ("joints_std", points(|estimate| flat(&estimate.joint_std.unwrap_or(NOWHERE)))),
         ("used", table(views, flags(&|frame| frame.views.iter().map(|view| view.used).collect()))),
         ("overlap", table(views, Data::Real(overlaps))),
+        ("left_out", table(views, Data::Text(left_out.map(str::to_owned).collect()))),
         ("doubted", table(codes.len(), flags(&doubted))),
     ]
 }
@@ -145,6 +150,7 @@ struct Table {
     joints_std: Vec<f64>,
     used: Vec<bool>,
     overlap: Vec<f64>,
+    left_out: Vec<Option<LeftOut>>,
     doubted: Vec<bool>,
 }
 
@@ -164,6 +170,7 @@ impl Table {
             joints_std: arrays.reals("joints_std", &[n, JOINTS, 3])?,
             used: arrays.flags("used", &[n, views])?,
             overlap: arrays.reals("overlap", &[n, views])?,
+            left_out: arrays.left_out(n * views)?,
             doubted: arrays.flags("doubted", &[n, codes.len()])?,
             header,
             codes,
@@ -177,6 +184,7 @@ impl Table {
         let view = |view: usize| FrameView {
             used: self.used[views * row + view],
             overlap: number(self.overlap[views * row + view]),
+            left_out: self.left_out[views * row + view],
         };
         let doubted = &self.doubted[self.codes.len() * row..];
         let doubts = self.codes.iter().zip(doubted).filter(|(_, doubted)| **doubted);
@@ -256,6 +264,22 @@ impl Arrays<'_> {
             Data::Flag(values) => Ok(values),
             _ => Err(problem(name, "it is not of kind |b1")),
         }
+    }
+
+    /// Why views were left out; older files do not say it.
+    fn left_out(&self, count: usize) -> Result<Vec<Option<LeftOut>>> {
+        if !self.0.contains_key("left_out.npy") {
+            return Ok(vec![None; count]);
+        }
+        let codes = self.texts("left_out")?;
+        let known = |code: &String| code.is_empty() || LeftOut::of_code(code).is_some();
+        if codes.len() != count || !codes.iter().all(known) {
+            return Err(problem(
+                "left_out",
+                "it does not hold a known reason, or nothing, for each view",
+            ));
+        }
+        Ok(codes.iter().map(|code| LeftOut::of_code(code)).collect())
     }
 
     /// Of any shape.

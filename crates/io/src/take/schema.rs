@@ -3,7 +3,7 @@
 use phalanx_hand::{Dof, Unit};
 use serde_json::{Map, Value, json};
 
-use crate::take::frames::{FORMAT_VERSION, JOINT_NAMES};
+use crate::take::frames::{FORMAT_VERSION, JOINT_NAMES, LeftOut};
 use crate::take::header::FORMAT;
 
 /// The JSON Schema (draft 2020-12) that every line of [`write_json_lines`](super::write_json_lines)
@@ -47,10 +47,19 @@ fn frame() -> Value {
     let std = |dof| described(json!({ "type": ["number", "null"], "minimum": 0 }), unit(dof));
     let joints = || JOINT_NAMES.map(|name| (name, vector()));
     let unit_interval = json!({ "type": ["number", "null"], "minimum": 0, "maximum": 1 });
+    let left_out = LeftOut::ALL.map(|why| Value::from(why.code())).into_iter();
+    let left_out: Vec<Value> = left_out.chain([Value::Null]).collect();
     let view = object([
         ("view", json!({ "type": "string" })),
         ("used", json!({ "type": "boolean" })),
         ("overlap", unit_interval.clone()),
+        (
+            "left_out",
+            described(
+                json!({ "enum": left_out }),
+                "Why a picture that is there had no part: it contradicts the others, or shows nothing where they see the hand.",
+            ),
+        ),
     ]);
     object([
         ("frame", json!({ "type": "integer", "minimum": 0 })),

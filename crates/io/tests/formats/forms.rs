@@ -17,7 +17,7 @@ fn assert_near(read: &Take, written: &Take, tolerance: f64) {
         assert_eq!((read.index, &read.doubts), (written.index, &written.doubts));
         near(read.time, written.time);
         for (read, written) in read.views.iter().zip(&written.views) {
-            assert_eq!(read.used, written.used);
+            assert_eq!((read.used, read.left_out), (written.used, written.left_out));
             assert_eq!(read.overlap.is_some(), written.overlap.is_some());
             near(read.overlap.unwrap_or(0.0), written.overlap.unwrap_or(0.0));
         }
@@ -109,6 +109,10 @@ fn the_csv_is_a_plain_table() {
     assert_eq!(cell(0, "quality"), "0.9300");
     assert_eq!((cell(0, "views"), cell(3, "views")), ("side".to_owned(), String::new()));
     assert_eq!(cell(5, "doubts"), "few-views;low-overlap");
+    assert_eq!(
+        (cell(7, "left_out"), cell(7, "doubts")),
+        ("top:disagrees".to_owned(), String::new())
+    );
     assert!(cell(0, "take").starts_with('{') && cell(1, "take").is_empty());
 }
 

@@ -2,10 +2,10 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 use phalanx_hand::{Dof, HandShape, Pose, PoseTable, Side};
-use phalanx_io::take::{FrameView, Take, TakeFrame, TakeHeader};
+use phalanx_io::take::{FrameView, LeftOut, Take, TakeFrame, TakeHeader};
 
 /// The opening and closing hand of the fixtures at 30 Hz by two cameras; frame 3 is lost, frame 5
-/// doubted, the hand's turn about X not estimated.
+/// doubted, one camera left out of frame 7, the hand's turn about X not estimated.
 pub(crate) fn open_close(side: Side) -> Take {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/trajectories/open-close.csv");
     let table = PoseTable::read(std::fs::File::open(file).unwrap()).unwrap();
@@ -36,8 +36,12 @@ fn frame(header: &TakeHeader, k: usize, mut pose: Pose) -> TakeFrame {
         time: k as f64 / 30.0,
         estimate,
         views: vec![
-            FrameView { used: !lost, overlap: (!lost).then_some(0.93) },
-            FrameView { used: false, overlap: None },
+            FrameView { used: !lost, overlap: (!lost).then_some(0.93), left_out: None },
+            FrameView {
+                used: false,
+                overlap: None,
+                left_out: (k == 7).then_some(LeftOut::Disagrees),
+            },
         ],
         doubts: match k {
             3 => vec!["no-hand".to_owned()],

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 use phalanx_hand::{HandShape, Pose, Side};
-use phalanx_io::take::{FrameView, Take, TakeFrame, TakeHeader};
+use phalanx_io::take::{FrameView, LeftOut, Take, TakeFrame, TakeHeader};
 use proptest::prelude::*;
 
 /// Takes of all kinds, within what files hold.
@@ -40,7 +40,8 @@ fn frames(
 ) -> impl Strategy<Value = TakeFrame> {
     let numbers = prop::array::uniform28(-1.5..1.5_f64);
     let std = prop::array::uniform28(prop::option::of(0.0..0.5_f64));
-    let view = (any::<bool>(), prop::option::of(0.0..=1.0_f64));
+    let left_out = prop::option::of(prop::sample::select(LeftOut::ALL.to_vec()));
+    let view = (any::<bool>(), prop::option::of(0.0..=1.0_f64), left_out);
     let views = prop::collection::vec(view, header.views.len());
     let doubts = prop::collection::btree_set(code, 0..3);
     (prop::option::of((numbers, std)), views, doubts).prop_map(move |(estimate, views, doubts)| {
@@ -48,7 +49,10 @@ fn frames(
             index: 0,
             time: 0.0,
             estimate: estimate.map(|(numbers, std)| header.estimate(Pose(numbers), std)),
-            views: views.into_iter().map(|(used, overlap)| FrameView { used, overlap }).collect(),
+            views: views
+                .into_iter()
+                .map(|(used, overlap, left_out)| FrameView { used, overlap, left_out })
+                .collect(),
             doubts: doubts.into_iter().collect(),
         }
     })

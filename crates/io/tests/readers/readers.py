@@ -61,6 +61,7 @@ def check_csv():
     same(read[[f"{name}_{axis}" for name in joints for axis in "xyz"]], points.reshape(len(frames), -1))
     same(read["time"], times, 1e-6)
     assert read["doubts"][5] == "few-views;low-overlap" and pandas.isna(read["doubts"][0])
+    assert read["left_out"][7] == "top:disagrees" and pandas.isna(read["left_out"][5])
     assert json.loads(read["take"][0]) == header
 
 
@@ -75,6 +76,7 @@ def check_npz():
     assert (read["found"] == found).all() and read["frame"].tolist() == [f["frame"] for f in frames]
     doubted = [list(read["doubt_codes"][row]) for row in read["doubted"]]
     assert doubted == [frame["doubts"] for frame in frames]
+    assert read["left_out"].tolist() == [[v["left_out"] or "" for v in frame["views"]] for frame in frames]
     assert json.loads(str(read["header"])) == header
 
 
