@@ -97,10 +97,8 @@ fn drawn(rig: &Rig, hand: &HandShape, pose: &Pose) -> Result<TakeFrame> {
 
 fn written(rig: &Rig, fit: &TakeFit) -> Take {
     let moment = |frame: usize| Moment {
-        name: frame.to_string(),
         time: Some(frame as f64 / RATE),
         frames: vec![Some(frame); rig.cameras.len()],
-        skew: 0.0,
     };
     let frame = |(number, fitted)| {
         let time = number as f64 / RATE;

@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             let at = folder.stamps().iter().position(|stamp| stamp.name == name);
             let at =
                 at.with_context(|| format!("camera '{camera}': picture {name} has no mask"))?;
-            Ok(mask_from(&input::picture(folder.path(at), None)?))
+            Ok(mask_from(&input::picture(&folder.path(at), None)?))
         })?,
         _ => bail!(
             "give --empty for a model of the background, or --hand with --empty or --masks for one of skin"
@@ -152,7 +152,7 @@ fn photographs(folder: &PictureFolder) -> Result<Vec<(String, RgbImage)>> {
     let count = stamps.len().min(MOST_PICTURES);
     let chosen = (0..count).map(|k| k * stamps.len() / count);
     let read = |at: usize| {
-        let picture = photograph_from(&input::picture(folder.path(at), None)?);
+        let picture = photograph_from(&input::picture(&folder.path(at), None)?);
         Ok((stamps[at].name.clone(), picture))
     };
     chosen.map(read).collect()

@@ -46,14 +46,13 @@ fn in_folders(cameras: &[Camera], given: &[PathBuf]) -> Result<Vec<Still>> {
         folders.push(PictureFolder::open(&folder).with_context(name)?);
     }
     let stamps: Vec<&[Stamp]> = folders.iter().map(Recording::stamps).collect();
-    let still = |moment: Moment| Still {
-        paths: moment
-            .frames
-            .iter()
-            .zip(&folders)
-            .map(|(frame, folder)| frame.map(|frame| folder.path(frame).to_owned()))
-            .collect(),
-        name: moment.name,
+    let still = |moment: Moment| {
+        let frames = moment.frames.iter().zip(&folders);
+        let named = frames.clone().find_map(|(frame, folder)| Some(&folder.stamps()[(*frame)?]));
+        Still {
+            name: named.map_or_else(String::new, |stamp| stamp.name.clone()),
+            paths: frames.map(|(frame, folder)| Some(folder.path((*frame)?))).collect(),
+        }
     };
     Ok(Timeline::new(&stamps).moments.into_iter().map(still).collect())
 }

@@ -1,9 +1,10 @@
 //! A folder of pictures, a file for each frame.
 
 use std::cmp::Ordering;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Result, ensure};
 use image::DynamicImage;
 
 use super::{Recording, Stamp};
@@ -14,7 +15,9 @@ const ENDINGS: [&str; 9] = ["png", "jpg", "jpeg", "pgm", "ppm", "bmp", "tif", "t
 
 /// A folder of pictures in the order of their names; numbers in names count as numbers.
 pub(crate) struct PictureFolder {
-    paths: Vec<PathBuf>,
+    folder: PathBuf,
+    /// The names of its files.
+    files: Vec<OsString>,
     stamps: Vec<Stamp>,
 }
 
@@ -29,12 +32,13 @@ impl PictureFolder {
         }
         paths.sort_by(|a, b| natural_order(&stem(a), &stem(b)).then_with(|| a.cmp(b)));
         let stamps = paths.iter().map(|path| Stamp { name: stem(path), time: None }).collect();
-        Ok(Self { paths, stamps })
+        let files = paths.iter().filter_map(|path| Some(path.file_name()?.to_owned())).collect();
+        Ok(Self { folder: folder.to_owned(), files, stamps })
     }
 
     /// The file of a frame.
-    pub(crate) fn path(&self, frame: usize) -> &Path {
-        &self.paths[frame]
+    pub(crate) fn path(&self, frame: usize) -> PathBuf {
+        self.folder.join(&self.files[frame])
     }
 }
 
@@ -44,8 +48,8 @@ impl Recording for PictureFolder {
     }
 
     fn read(&mut self, frame: usize) -> Result<DynamicImage> {
-        let path = self.paths.get(frame).context("there is no such frame")?;
-        input::picture(path, None)
+        ensure!(frame < self.files.len(), "there is no such frame");
+        input::picture(&self.path(frame), None)
     }
 }
 

@@ -15,15 +15,10 @@ use crate::segment::Pictures;
 /// Reads what all cameras recorded.
 pub(crate) struct Reader<'a> {
     cameras: &'a [Camera],
+    paths: &'a [PathBuf],
     recordings: Vec<Box<dyn Recording>>,
     pictures: &'a Pictures,
     pub(crate) timeline: Timeline,
-}
-
-/// What the cameras saw at a moment, and what could not be read of it.
-struct Seen {
-    frame: TakeFrame,
-    failures: Vec<String>,
 }
 
 impl<'a> Reader<'a> {
@@ -33,12 +28,11 @@ impl<'a> Reader<'a> {
     /// A recording that cannot be opened, another number of times than frames, nothing to match frames by.
     pub(crate) fn open(
         cameras: &'a [Camera],
-        paths: &[PathBuf],
+        paths: &'a [PathBuf],
         times: &[Option<Vec<f64>>],
         pictures: &'a Pictures,
     ) -> Result<Self> {
-        let recordings: Vec<Box<dyn Recording>> =
-            paths.iter().map(|path| super::open(path)).collect::<Result<_>>()?;
+        let recordings = opened(paths)?;
         let mut stamps: Vec<Cow<'_, [Stamp]>> = Vec::new();
         for ((recording, camera), times) in recordings.iter().zip(cameras).zip(times) {
             stamps.push(with_times(recording.stamps(), camera, times.as_deref())?);
@@ -52,7 +46,15 @@ impl<'a> Reader<'a> {
             "no two cameras have a frame of one moment: give pictures of one moment the same name in every \
              folder, or a timestamps file"
         );
-        Ok(Self { cameras, recordings, pictures, timeline })
+        Ok(Self { cameras, paths, recordings, pictures, timeline })
+    }
+
+    /// Goes back to the beginning.
+    pub(crate) fn rewind(&mut self) -> Result<()> {
+        // Never are two lists of all frames held.
+        self.recordings.clear();
+        self.recordings = opened(self.paths)?;
+        Ok(())
     }
 
     /// The moments.
@@ -71,15 +73,6 @@ impl<'a> Reader<'a> {
 
     /// Reads a moment that comes after the last one read; what cannot be read is noted and missing.
     pub(crate) fn read_noting(&mut self, moment: usize, failures: &mut Vec<String>) -> TakeFrame {
-        let Seen { frame, failures: new } = self.read(moment);
-        let name = &self.moments()[moment].name;
-        failures.extend(new.into_iter().map(|failure| format!("frame {name}, camera {failure}")));
-        frame
-    }
-
-    /// Reads a moment that comes after the last one read.
-    fn read(&mut self, moment: usize) -> Seen {
-        let mut failures = Vec::new();
         let mut masks = Vec::new();
         for (view, recording) in self.recordings.iter_mut().enumerate() {
             let Some(frame) = self.timeline.moments[moment].frames[view] else {
@@ -89,12 +82,18 @@ impl<'a> Reader<'a> {
             let camera = &self.cameras[view];
             let read = recording.read(frame);
             let mask = read.and_then(|picture| mask(&picture, camera, self.pictures));
-            masks.push(
-                mask.map_err(|error| failures.push(format!("{}: {error:#}", camera.name))).ok(),
-            );
+            let named = |error| {
+                let name = &recording.stamps()[frame].name;
+                failures.push(format!("frame {name}, camera {}: {error:#}", camera.name));
+            };
+            masks.push(mask.map_err(named).ok());
         }
-        Seen { frame: TakeFrame { masks }, failures }
+        TakeFrame { masks }
     }
+}
+
+fn opened(paths: &[PathBuf]) -> Result<Vec<Box<dyn Recording>>> {
+    paths.iter().map(|path| super::open(path)).collect()
 }
 
 fn with_times<'a>(

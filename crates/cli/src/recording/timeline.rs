@@ -7,14 +7,10 @@ use super::Stamp;
 /// A moment and the frame that each camera took then.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Moment {
-    /// The name of the frames, or of the slowest camera's.
-    pub(crate) name: String,
     /// Seconds after the first moment, where cameras have clocks.
     pub(crate) time: Option<f64>,
     /// The number of each camera's frame; `None` where it has none at that moment.
     pub(crate) frames: Vec<Option<usize>>,
-    /// By how much the frames' times differ at most, seconds.
-    pub(crate) skew: f64,
 }
 
 /// The moments of a recording, and what did not fit in.
@@ -37,7 +33,7 @@ impl Timeline {
         let times: Option<Vec<Vec<f64>>> =
             cameras.iter().map(|stamps| stamps.iter().map(|stamp| stamp.time).collect()).collect();
         let moments = match times {
-            Some(times) => by_time(cameras, &times),
+            Some(times) => by_time(&times),
             None => by_name(cameras),
         };
         let of_moments = |camera: usize| moments.iter().map(move |moment| moment.frames[camera]);
@@ -81,44 +77,40 @@ fn by_name(cameras: &[&[Stamp]]) -> Vec<Moment> {
     }
     for name in order {
         let frames = known.iter().map(|names| names.get(name).copied()).collect();
-        moments.push(Moment { name: name.to_owned(), time: None, frames, skew: 0.0 });
+        moments.push(Moment { time: None, frames });
     }
     moments
 }
 
-fn by_time(cameras: &[&[Stamp]], times: &[Vec<f64>]) -> Vec<Moment> {
+fn by_time(times: &[Vec<f64>]) -> Vec<Moment> {
     let periods: Vec<f64> = times.iter().map(|times| period(times)).collect();
     let mut slowest_first: Vec<usize> = (0..times.len()).collect();
     slowest_first.sort_by(|&a, &b| periods[b].total_cmp(&periods[a]));
     let period = slowest_first.first().map_or(0.0, |&slowest| periods[slowest]);
-    let mut at: Vec<(f64, &str)> = Vec::new();
+    let mut at: Vec<f64> = Vec::new();
     for camera in slowest_first {
-        let far = |&(time, _): &(f64, &str)| {
-            let after = at.partition_point(|(other, _)| *other < time);
+        let far = |&time: &f64| {
+            let after = at.partition_point(|other| *other < time);
             let near = after.saturating_sub(1)..at.len().min(after + 1);
-            at[near].iter().all(|(other, _)| (other - time).abs() > FILLED * period)
+            at[near].iter().all(|other| (other - time).abs() > FILLED * period)
         };
-        let named = times[camera].iter().zip(cameras[camera]);
-        let named = named.map(|(&time, stamp)| (time, stamp.name.as_str()));
-        let added: Vec<(f64, &str)> = named.filter(far).collect();
+        let added: Vec<f64> = times[camera].iter().copied().filter(far).collect();
         at.extend(added);
-        at.sort_by(|a, b| a.0.total_cmp(&b.0));
+        at.sort_by(f64::total_cmp);
     }
-    let start = at.first().map_or(0.0, |(time, _)| *time);
+    let start = at.first().copied().unwrap_or_default();
     let mut next = vec![0; times.len()];
-    let moment = |(at, name): (f64, &str)| {
+    let moment = |at: f64| {
         let mut frames = vec![None; times.len()];
-        let mut skew: f64 = 0.0;
         for (camera, times) in times.iter().enumerate() {
             if let Some(frame) = nearest(times, next[camera], at)
                 && (times[frame] - at).abs() <= 0.5 * period
             {
                 frames[camera] = Some(frame);
                 next[camera] = frame + 1;
-                skew = skew.max((times[frame] - at).abs());
             }
         }
-        Moment { name: name.to_owned(), time: Some(at - start), frames, skew }
+        Moment { time: Some(at - start), frames }
     };
     at.into_iter().map(moment).collect()
 }
@@ -168,8 +160,6 @@ mod tests {
     fn frames_of_one_name_belong_together() {
         let (one, other) = (named(&["1", "2", "4"]), named(&["2", "3", "4", "5"]));
         let timeline = Timeline::new(&[&one, &other]);
-        let names: Vec<&str> = timeline.moments.iter().map(|m| m.name.as_str()).collect();
-        assert_eq!(names, ["1", "2", "3", "4", "5"]);
         assert_eq!(
             frames(&timeline),
             [
@@ -191,7 +181,6 @@ mod tests {
         assert_eq!(timeline.moments.len(), 5);
         assert_eq!(timeline.moments[3].frames, [Some(6), Some(3)]);
         assert_eq!(timeline.unmatched, [4, 0]);
-        assert!((timeline.moments[3].skew - 0.003).abs() < 1e-9);
     }
 
     #[test]

@@ -48,12 +48,6 @@ impl<'a> Recorded<'a> {
         Ok(fit_take(&self.source.cameras, &frames, settings, bar)?)
     }
 
-    /// Reads from the beginning again.
-    pub(super) fn rewind(&mut self) -> Result<()> {
-        self.reader = self.source.reader()?;
-        Ok(())
-    }
-
     /// What is said of all frames.
     pub(super) fn header(&self, hand: &HandShape, rest: DAffine3) -> TakeHeader {
         take::header(&self.source.cameras, (hand, rest), self.rate)

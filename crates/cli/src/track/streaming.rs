@@ -31,7 +31,7 @@ impl<'a> Streaming<'a> {
     ) -> Result<Self> {
         // Every picture is read once more on the way.
         let fit = recorded.fit(most, settings, bar, &mut Vec::new())?;
-        recorded.rewind()?;
+        recorded.reader.rewind()?;
         let tracker = Tracker::of_take(&recorded.source.cameras, &fit, Delay::OneFrame)?;
         let header = recorded.header(&fit.hand, fit.volume.volume.rest_frame());
         let rows = Rows::new(out, kind, header, None, Tally::default())?;
