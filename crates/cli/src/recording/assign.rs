@@ -51,7 +51,7 @@ fn named<'a>(cameras: &[Camera], recording: &'a str) -> Option<(usize, &'a str)>
 }
 
 /// What a folder holds for each camera: a folder or a file of its name; `None` where it holds nothing for any.
-fn folders_of(cameras: &[Camera], folder: &Path) -> Option<Vec<Option<PathBuf>>> {
+pub(crate) fn folders_of(cameras: &[Camera], folder: &Path) -> Option<Vec<Option<PathBuf>>> {
     let entries: Vec<PathBuf> =
         std::fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path())).collect();
     let of = |camera: &Camera| {

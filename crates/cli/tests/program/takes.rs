@@ -107,6 +107,30 @@ fn pictures_are_shown_with_joints_and_outline_of_the_hand() {
     let outlines: Vec<&str> = outlines.split("\",\"").collect();
     assert!(outlines.len() == 2 && outlines.iter().all(|outline| outline.len() > 500));
     assert_eq!(page.matches("data:image/jpeg").count(), 2);
+
+    // The same on a sheet, and as a video: two pictures of black, with an outline.
+    let filmed = |others: &[&str]| {
+        folder.printed(&[&arguments[..arguments.len() - 1], others].concat());
+    };
+    filmed(&["--out", "sheet.png", "--every", "15"]);
+    let sheet = image::open(at("sheet.png")).unwrap().to_rgb8();
+    assert_eq!(sheet.dimensions(), (120, 2 * 90));
+    let drawn = |rows: std::ops::Range<u32>| {
+        sheet
+            .enumerate_pixels()
+            .filter(|(_, y, pixel)| rows.contains(y) && pixel.0 != [0; 3])
+            .count()
+    };
+    assert!(drawn(0..90) > 100 && drawn(90..180) == 0, "frame 15 has no picture");
+    if Command::new("ffmpeg").arg("-version").output().is_err() {
+        eprintln!("skipped: ffmpeg, which makes videos, is not installed");
+        return;
+    }
+    filmed(&["--out", "film.mp4", "--every", "3"]);
+    let count = ["-v", "error", "-count_packets", "-show_entries", "stream=nb_read_packets,width"];
+    let probe =
+        Command::new("ffprobe").args(count).args(["-of", "csv=p=0"]).arg(at("film.mp4")).output();
+    assert_eq!(String::from_utf8(probe.unwrap().stdout).unwrap().trim(), "120,10");
 }
 
 /// What other commands print, they print as JSON when asked.
@@ -152,7 +176,8 @@ fn wrong_use_is_refused_with_what_to_do() {
     says(&["convert", "take.txt", "--out", "take.bvh"], "ends with .csv, .jsonl or .npz");
     says(&["convert", "take.csv", "--out", "t.trc", "--axes", "yxz"], "without a mirror");
     says(&["convert", "take.csv", "--out", "t.glb", "--unit", "mm"], "glTF has lengths in m");
-    says(&["view", "take.csv", "--out", "take.pdf"], "the page is HTML");
+    says(&["view", "take.csv", "--out", "take.pdf"], ".html for a page, .png for a sheet");
+    says(&["view", "take.csv", "--out", "sheet.png"], "give --frames and --rig");
     says(&["report", "take.csv", "--out", "take.pdf"], "must end with .csv or .html");
     says(&["evaluate", "take.csv", "--reference", "x.c3d"], "ends with .csv, .trc, .mot");
 }
