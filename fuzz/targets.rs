@@ -6,10 +6,9 @@ use image::GrayImage;
 use phalanx::{Error, Estimator, PartialTraining, decode_picture};
 use phalanx_camera::Rig;
 use phalanx_codebook::{AnyEncoder, Encoder, Scratch};
-use phalanx_hand::{HandShape, Pose, PoseTable};
-use phalanx_io::calibration::{
-    Calibration, Missing, Source, Unit, to_anipose_toml, to_opencv_yaml,
-};
+use phalanx_hand::{HandShape, Pose, PoseTable, Side};
+use phalanx_io::calibration::{Calibration, Missing, Unit, to_anipose_toml, to_opencv_yaml};
+use phalanx_io::{Source, landmarks};
 use phalanx_segmentation::{Cleanup, Mask, Silhouette, SkinModel, WristModel, clean};
 
 /// A target's name, which is also its corpus's, and what it does.
@@ -17,11 +16,12 @@ pub(crate) type Target = (&'static str, fn(&[u8]));
 
 /// All of them.
 #[allow(dead_code, reason = "each fuzz target uses one of them")]
-pub(crate) const TARGETS: [Target; 11] = [
+pub(crate) const TARGETS: [Target; 12] = [
     ("model", model),
     ("part", part),
     ("rig", rig),
     ("calibration", calibration),
+    ("landmarks", landmarks),
     ("hand", hand),
     ("poses", poses),
     ("skin_model", skin_model),
@@ -86,6 +86,18 @@ pub(crate) fn calibration(data: &[u8]) {
             let again = Calibration::read(&[file], &Missing::default());
             let again = again.expect("what was read can be written and read again");
             assert_eq!(again.cameras.len(), cameras.len());
+        }
+    }
+}
+
+pub(crate) fn landmarks(data: &[u8]) {
+    let file = Source { name: "take_7_keypoints.json", bytes: data };
+    for side in [Side::Left, Side::Right] {
+        for track in landmarks::read(&file, side).into_iter().flatten() {
+            let points = track.in_pixels((640, 480)).frames.into_values().flatten().flatten();
+            for point in points {
+                assert!(point.at.is_finite() && 0.0 < point.confidence && point.confidence <= 1.0);
+            }
         }
     }
 }

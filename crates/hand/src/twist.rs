@@ -17,6 +17,29 @@ pub enum Bone {
 }
 
 impl Bone {
+    /// What a joint moves with, by its place in [`PosedHand::joints`](crate::PosedHand::joints): the wrist
+    /// with the forearm, a digit's base with the palm, its other joints with the segment that they end.
+    ///
+    /// ```
+    /// use phalanx_hand::{Bone, Digit};
+    ///
+    /// assert_eq!(Bone::of_joint(0), Bone::Forearm);
+    /// assert_eq!(Bone::of_joint(5), Bone::Palm);
+    /// assert_eq!(Bone::of_joint(8), Bone::Segment(Digit::Index, 2)); // its tip
+    /// ```
+    ///
+    /// # Panics
+    /// A joint beyond the last.
+    pub fn of_joint(joint: usize) -> Self {
+        match joint.checked_sub(1) {
+            None => Self::Forearm,
+            Some(of_digits) => match of_digits % 4 {
+                0 => Self::Palm,
+                end => Self::Segment(Digit::ALL[of_digits / 4], end - 1),
+            },
+        }
+    }
+
     /// Whether a number of the pose moves this part.
     pub fn is_moved_by(self, dof: Dof) -> bool {
         self.dofs().any(|own| own == dof)

@@ -1,7 +1,7 @@
 //! What can be wrong with a file.
 
 /// The result of this crate's fallible calls.
-pub type Result<T> = std::result::Result<T, Error>;
+pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// What is wrong with a file; each message says where, and what to do.
 #[non_exhaustive]
@@ -47,6 +47,14 @@ pub enum Error {
         second: String,
         /// Between them, mm.
         mm: f64,
+    },
+    /// Landmarks that cannot be read.
+    #[error("landmarks: {file}: {what}")]
+    Landmarks {
+        /// The file.
+        file: String,
+        /// What is wrong, where, and what to do.
+        what: String,
     },
     /// A take's header that is none, of another version, or contradicts itself.
     #[error("take: header: {what}")]
@@ -152,6 +160,11 @@ impl Error {
     /// A calibration that cannot be read.
     pub(crate) fn calibration(what: impl AsRef<str>) -> Self {
         Self::Calibration { what: shortened(what.as_ref()) }
+    }
+
+    /// Landmarks that cannot be read.
+    pub(crate) fn landmarks(file: &str, what: impl AsRef<str>) -> Self {
+        Self::Landmarks { file: shortened(file), what: shortened(what.as_ref()) }
     }
 
     /// A field that cannot be right.

@@ -7,12 +7,12 @@ use crate::calibration::document::Document;
 use crate::calibration::fields::{Field, Fields};
 use crate::calibration::layout;
 use crate::calibration::record::Record;
-use crate::calibration::source::Source;
 use crate::calibration::syntax::Syntax;
 use crate::calibration::unit::Unit;
 use crate::calibration::value::{Map, Value, get};
 use crate::calibration::{biocv, xml, yaml};
 use crate::error::{Error, Result};
+use crate::source::Source;
 
 /// What one file holds.
 enum Content {
@@ -65,8 +65,25 @@ pub(super) fn read(files: &[Source<'_>]) -> Result<Document> {
     }
 }
 
+/// The most bytes of a file that are read. Calibrations have some kilobytes.
+const MOST_BYTES: usize = 1 << 20;
+
+fn text(file: &Source<'_>) -> Result<String> {
+    if file.bytes.len() > MOST_BYTES {
+        let megabytes = file.bytes.len() >> 20;
+        return Err(Error::calibration(format!("{megabytes} MiB; at most 1 MiB is read")));
+    }
+    let text = file
+        .decoded()
+        .ok_or_else(|| Error::calibration("it is no text in UTF-8 or UTF-16: save it as UTF-8"))?;
+    if text.trim().is_empty() {
+        return Err(Error::calibration("the file is empty"));
+    }
+    Ok(text)
+}
+
 fn parse(file: &Source<'_>) -> Result<Content> {
-    let text = file.text()?;
+    let text = text(file)?;
     let value = match Syntax::of(&text)? {
         Syntax::Xml => match xml::parse(&text)? {
             xml::Content::Storage(map) => Value::Map(map),

@@ -30,7 +30,6 @@ mod lens_model;
 mod numbers;
 mod record;
 mod rotation;
-mod source;
 mod syntax;
 mod unit;
 mod value;
@@ -41,9 +40,10 @@ mod yaml;
 use phalanx_camera::{Camera, Volume};
 
 pub use distance::{Distance, camera_distances};
-pub use source::Source;
 pub use unit::Unit;
 pub use write::{to_anipose_toml, to_opencv_yaml};
+
+pub use crate::source::Source;
 
 use crate::calibration::document::Document;
 use crate::calibration::record::{MOST_CAMERAS, Record};

@@ -8,7 +8,6 @@ mod csv_table;
 mod frames;
 mod header;
 mod json_lines;
-mod npy;
 mod npz;
 mod schema;
 mod stored_zip;

@@ -6,11 +6,11 @@ use glam::DVec3;
 use phalanx_hand::{Dof, JOINTS, Pose};
 
 use crate::error::{Error, Result};
+use crate::npy::{Array, Data};
 use crate::take::frames::{
     FrameView, JOINT_NAMES, LeftOut, PoseEstimate, Take, TakeFrame, TakeHeader,
 };
 use crate::take::header;
-use crate::take::npy::{Array, Data};
 use crate::take::stored_zip;
 
 /// More codes of doubts are texts of their own, which one column each would not serve.

@@ -1,7 +1,5 @@
 //! Files as they come: bytes with a name, made text.
 
-use crate::error::{Error, Result};
-
 /// A file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source<'a> {
@@ -12,34 +10,19 @@ pub struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// The most bytes of a file that are read. Calibrations have some kilobytes.
-    const MOST_BYTES: usize = 1 << 20;
-
     /// The name without its extensions.
-    pub(super) fn stem(&self) -> &str {
+    pub(crate) fn stem(&self) -> &str {
         self.name.split('.').find(|part| !part.is_empty()).unwrap_or(self.name)
     }
 
-    /// The text, whatever it is encoded in, without a byte-order mark.
-    pub(super) fn text(&self) -> Result<String> {
-        let Self { bytes, .. } = *self;
-        if bytes.len() > Self::MOST_BYTES {
-            let megabytes = bytes.len() >> 20;
-            return Err(Error::calibration(format!("{megabytes} MiB; at most 1 MiB is read")));
-        }
-        let text = match bytes {
+    /// The text in UTF-8 or UTF-16, without a byte-order mark; `None` of what is none.
+    pub(crate) fn decoded(&self) -> Option<String> {
+        match self.bytes {
             [0xff, 0xfe, rest @ ..] => utf16(rest, u16::from_le_bytes),
             [0xfe, 0xff, rest @ ..] => utf16(rest, u16::from_be_bytes),
             [0xef, 0xbb, 0xbf, rest @ ..] => std::str::from_utf8(rest).ok().map(str::to_owned),
-            _ => std::str::from_utf8(bytes).ok().map(str::to_owned),
-        };
-        let text = text.ok_or_else(|| {
-            Error::calibration("it is no text in UTF-8 or UTF-16: save it as UTF-8")
-        })?;
-        if text.trim().is_empty() {
-            return Err(Error::calibration("the file is empty"));
+            bytes => std::str::from_utf8(bytes).ok().map(str::to_owned),
         }
-        Ok(text)
     }
 }
 

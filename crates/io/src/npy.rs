@@ -7,18 +7,18 @@ const MAGIC: &[u8; 8] = b"\x93NUMPY\x01\x00";
 /// The header's end and the array's beginning stand at a multiple of this.
 const ALIGNMENT: usize = 64;
 
-/// An array of one of the four kinds that a take needs.
+/// An array of one of the kinds that are read; those of four bytes are held as of eight.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Array {
+pub(crate) struct Array {
     /// The extent of each axis, the last running fastest.
-    pub(super) shape: Vec<usize>,
+    pub(crate) shape: Vec<usize>,
     /// As many entries as the shape says.
-    pub(super) data: Data,
+    pub(crate) data: Data,
 }
 
 /// The entries of an array.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Data {
+pub(crate) enum Data {
     Real(Vec<f64>),
     Integer(Vec<i64>),
     Flag(Vec<bool>),
@@ -27,12 +27,12 @@ pub(super) enum Data {
 
 impl Array {
     /// A list.
-    pub(super) fn list(data: Data) -> Self {
+    pub(crate) fn list(data: Data) -> Self {
         Self { shape: vec![data.len()], data }
     }
 
     /// The array as a `.npy` file.
-    pub(super) fn to_bytes(&self) -> Vec<u8> {
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let mut shape = String::new();
         for extent in &self.shape {
             write!(shape, "{extent},").expect("writing to a string");
@@ -52,8 +52,8 @@ impl Array {
         bytes
     }
 
-    /// Reads a `.npy` file of one of the four kinds.
-    pub(super) fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
+    /// Reads a `.npy` file of one of the kinds.
+    pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
         let rest = bytes.strip_prefix(MAGIC).ok_or("it is no NumPy array of format 1.0")?;
         let (length, rest) = rest.split_first_chunk().ok_or("it is cut short")?;
         let length = usize::from(u16::from_le_bytes(*length));
@@ -120,9 +120,10 @@ impl Data {
         let width = descr.strip_prefix("<U").and_then(|width| width.parse::<usize>().ok());
         let size = match (descr, width) {
             ("<f8" | "<i8", _) => Some(8),
+            ("<f4", _) => Some(4),
             ("|b1", _) => Some(1),
             (_, Some(width)) => width.checked_mul(4),
-            _ => return Err(format!("its kind '{descr}' is none of <f8, <i8, |b1 and <U")),
+            _ => return Err(format!("its kind '{descr}' is none of <f8, <f4, <i8, |b1 and <U")),
         };
         let expected = size.and_then(|size| size.checked_mul(count));
         if expected != Some(bytes.len()) {
@@ -130,6 +131,9 @@ impl Data {
         }
         Ok(match (descr, width) {
             ("<f8", _) => Self::Real(eights(bytes).map(f64::from_le_bytes).collect()),
+            ("<f4", _) => {
+                Self::Real(fours(bytes).map(|own| f32::from_le_bytes(own).into()).collect())
+            }
             ("<i8", _) => Self::Integer(eights(bytes).map(i64::from_le_bytes).collect()),
             (_, None) => Self::Flag(bytes.iter().map(|&byte| byte != 0).collect()),
             // Entries without a letter take no byte.
@@ -143,6 +147,11 @@ impl Data {
 const MOST_EMPTY: usize = 1 << 16;
 
 fn eights(bytes: &[u8]) -> impl Iterator<Item = [u8; 8]> {
+    let (chunks, _) = bytes.as_chunks();
+    chunks.iter().copied()
+}
+
+fn fours(bytes: &[u8]) -> impl Iterator<Item = [u8; 4]> {
     let (chunks, _) = bytes.as_chunks();
     chunks.iter().copied()
 }
