@@ -180,7 +180,12 @@ impl Refiner {
     pub fn frame(&self, estimate: &Estimate) -> Result<BundleFrame> {
         let evidence = self.evidence_of(&estimate.observation)?;
         let prior = self.prior(&estimate.pose, &estimate.std)?;
-        Ok(BundleFrame { observations: evidence, start: *prior.mean(), prior })
+        Ok(BundleFrame {
+            observations: evidence,
+            landmarks: Vec::new(),
+            start: *prior.mean(),
+            prior,
+        })
     }
 
     /// Fits the hand's proportions to several frames of it.

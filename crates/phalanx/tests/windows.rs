@@ -282,7 +282,8 @@ fn what_is_beyond_the_picture_is_not_known() {
     let (window, silhouette) = look(camera, &seen);
     let evidence = [window.evidence(&silhouette).unwrap()];
     let prior = PosePrior::independent(pose, &[0.3; Dof::COUNT]).unwrap();
-    let refined = PoseFitSettings::default().fit(&hand, &rest, &evidence, &pose, &prior).unwrap();
+    let refined =
+        PoseFitSettings::default().fit(&hand, &rest, &evidence[..], &pose, &prior).unwrap();
     let bent: f64 = Digit::FINGERS
         .into_iter()
         .flat_map(|digit| digit.dofs()[1..].to_vec())

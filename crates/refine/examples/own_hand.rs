@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let start = moving(f64::from(frame), 0.1); // an estimate, not quite right
         let prior = PosePrior::independent(start, &deviations)?;
-        frames.push(BundleFrame { observations: evidence, start, prior });
+        frames.push(BundleFrame { observations: evidence, landmarks: Vec::new(), start, prior });
     }
     let found = BundleAdjustment::default().run(&mean, &rest, &frames)?;
 

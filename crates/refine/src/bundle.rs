@@ -7,6 +7,8 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::geometry::correspondence::ViewMatcher;
+use crate::observation::evidence::Evidence;
+use crate::observation::landmarks::LandmarkObservation;
 use crate::observation::silhouette::SilhouetteObservation;
 use crate::pose_fit::settings::PoseFitSettings;
 use crate::priors::nuisance::{ExtrinsicsPrior, NuisanceParameters, ShapePrior};
@@ -46,10 +48,19 @@ impl Default for BundleAdjustment {
 pub struct BundleFrame {
     /// What each camera saw; the same cameras in every frame where cameras are fitted.
     pub observations: Vec<SilhouetteObservation>,
+    /// The landmarks of each camera that has some; of the same cameras in every frame where cameras are fitted.
+    pub landmarks: Vec<LandmarkObservation>,
     /// Where to start.
     pub start: Pose,
     /// What is known of the pose.
     pub prior: PosePrior,
+}
+
+impl BundleFrame {
+    /// All that was seen in it.
+    pub fn evidence(&self) -> Evidence<'_> {
+        Evidence { silhouettes: &self.observations, landmarks: &self.landmarks }
+    }
 }
 
 /// A calibrated hand.
@@ -60,7 +71,7 @@ pub struct BundleResult {
     /// How well each of its proportions is known, standard deviations of logarithms: the size's, then
     /// one for every bone and radius in the order of [`HandShape::scaled`].
     pub hand_std: Vec<f64>,
-    /// The cameras; those whose extrinsics were fitted and that do not move, where they were found to stand, the others as given.
+    /// The cameras of the silhouettes, then those that have landmarks alone; those whose extrinsics were fitted and that do not move, where they were found to stand, the others as given.
     pub cameras: Vec<Camera>,
     /// The pose in each frame.
     pub poses: Vec<Pose>,
@@ -87,15 +98,15 @@ impl BundleAdjustment {
     ) -> Result<BundleResult> {
         self.pose_fit.check()?;
         let first = frames.first().ok_or(Error::NoObservation)?;
-        for (frame, BundleFrame { observations, .. }) in frames.iter().enumerate() {
-            let (found, expected) = (observations.len(), first.observations.len());
+        for (frame, own) in frames.iter().enumerate() {
+            let (found, expected) = (own.evidence().views(), first.evidence().views());
             if found != expected && self.cameras.is_some() {
                 return Err(Error::ViewCount { frame, found, expected });
             }
         }
         let refine = |frame: &BundleFrame| {
-            let BundleFrame { observations, start, prior } = frame;
-            self.pose_fit.fit(given, rest, observations, start, prior).map(|fit| fit.pose)
+            let BundleFrame { start, prior, .. } = frame;
+            self.pose_fit.fit(given, rest, frame.evidence(), start, prior).map(|fit| fit.pose)
         };
         let starts: Vec<Pose> = frames.par_iter().map(refine).collect::<Result<_>>()?;
         let problem = Problem {
@@ -103,7 +114,7 @@ impl BundleAdjustment {
             rest,
             frames: frames
                 .iter()
-                .map(|frame| Frame { evidence: &frame.observations, prior: &frame.prior })
+                .map(|frame| Frame { evidence: frame.evidence(), prior: &frame.prior })
                 .collect(),
             freedom: FreeParameters { hand: Some(self.hand), cameras: self.cameras },
         };
@@ -117,10 +128,10 @@ impl BundleAdjustment {
         let outcome = self.pose_fit.levels_from(1, &problem, start, ANY_ENERGY, &mut views)?;
         let ious = ious(&problem, &outcome.state, self.pose_fit.finest(), &mut views)?;
         let shared = &outcome.state.shared;
-        let camera = |(k, evidence): (usize, &SilhouetteObservation)| {
+        let camera = |(k, given): (usize, &Camera)| {
             let correction = shared.corrections.get(k);
-            let moved = correction.map(|own| own.camera(evidence.camera(), rest.translation));
-            moved.unwrap_or_else(|| evidence.camera().clone())
+            let moved = correction.map(|own| own.camera(given, rest.translation));
+            moved.unwrap_or_else(|| given.clone())
         };
         let (_, known) = problem.shared_prior(shared);
         let covariance = shared_covariance(&outcome.frames, &known).ok_or_else(|| {
@@ -131,7 +142,7 @@ impl BundleAdjustment {
         Ok(BundleResult {
             hand: shared.shape.hand(given),
             hand_std: numbers.map(|k| covariance[(k, k)].max(0.0).sqrt()).collect(),
-            cameras: first.observations.iter().enumerate().map(camera).collect(),
+            cameras: first.evidence().cameras().map(camera).collect(),
             poses: outcome.state.frames.iter().map(|parameters| parameters.pose).collect(),
             ious,
             boundary_rms_px: outcome.boundary_rms_px(self.pose_fit.noise),

@@ -34,8 +34,14 @@ pub enum Error {
         /// The camera.
         camera: String,
     },
+    /// Landmarks none of which was seen.
+    #[error("camera {camera}: none of its landmarks was seen")]
+    NoLandmark {
+        /// The camera.
+        camera: String,
+    },
     /// Nothing to fit to.
-    #[error("no silhouette to fit to")]
+    #[error("neither a silhouette nor a landmark to fit to")]
     NoObservation,
     /// A number that is not finite.
     #[error("{what} {name} is {value}")]

@@ -14,10 +14,13 @@ mod solver;
 
 pub use bundle::{BundleAdjustment, BundleFrame, BundleResult};
 pub use error::{Error, Result};
+pub use observation::evidence::Evidence;
+pub use observation::landmarks::LandmarkObservation;
 pub use observation::silhouette::SilhouetteObservation;
 pub use pose_fit::agreement::Agreement;
 pub use pose_fit::boundary_noise::{BoundaryNoise, BoundaryResiduals};
 pub use pose_fit::fit::PoseFit;
+pub use pose_fit::landmark_noise::LandmarkNoise;
 pub use pose_fit::posterior::Posterior;
 pub use pose_fit::screening::Screened;
 pub use pose_fit::settings::{Level, PoseFitSettings};

@@ -6,8 +6,8 @@ use glam::{DAffine3, DVec2, DVec3};
 use phalanx_camera::{Camera, Intrinsics, Rig};
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::{
-    BundleAdjustment, BundleFrame, Error, Level, NuisanceParameters, PoseFitSettings, PosePrior,
-    SilhouetteObservation,
+    BundleAdjustment, BundleFrame, Error, Evidence, Level, NuisanceParameters, PoseFitSettings,
+    PosePrior, SilhouetteObservation,
 };
 use phalanx_render::Renderer;
 use phalanx_segmentation::Mask;
@@ -276,6 +276,7 @@ fn a_hand_is_calibrated_from_several_frames() {
             let pose = hand_bent_by([0.3, bend, 0.9 - bend, 0.5, bend], 0.2 * f64::from(k));
             BundleFrame {
                 observations: see(&rig, &own, &pose, &rest),
+                landmarks: Vec::new(),
                 start: pose,
                 prior: prior(pose),
             }
@@ -299,7 +300,7 @@ fn what_cannot_be_fitted_is_named() {
     assert!(matches!(size(60, 45).unwrap_err(), Error::MaskSize { found: (60, 45), .. }));
     assert!(matches!(size(120, 90).unwrap_err(), Error::NoBoundary { .. }));
     let refinement = PoseFitSettings::default();
-    let none = refinement.fit(&hand, &rest, &[], &Pose::REST, &prior(Pose::REST));
+    let none = refinement.fit(&hand, &rest, Evidence::default(), &Pose::REST, &prior(Pose::REST));
     assert!(matches!(none.unwrap_err(), Error::NoObservation));
     let evidence = see(&rig, &hand, &Pose::REST, &rest);
     for wrong in [

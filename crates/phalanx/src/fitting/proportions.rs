@@ -62,7 +62,12 @@ pub(super) fn learn(
         let frame = found.frame(fitter.hand);
         let evidence = fitter.evidence(&found.crops, &found.left_out, &frame);
         let start = found.pose_in(rest, fitter.hand);
-        BundleFrame { observations: evidence, start, prior: fitter.prior.clone() }
+        BundleFrame {
+            observations: evidence,
+            landmarks: Vec::new(),
+            start,
+            prior: fitter.prior.clone(),
+        }
     };
     let is_right = |found: &&Found| views::is_right(fitter, found);
     let right: Vec<bool> = found.par_iter().map(is_right).collect::<Result<_>>()?;
@@ -85,8 +90,8 @@ pub(super) fn learn(
     };
     let energy = |hand: &HandShape| -> Result<f64> {
         let of_frame = |frame: &BundleFrame| -> Result<f64> {
-            let BundleFrame { observations: evidence, start, prior } = frame;
-            Ok(fitter.refinement.fit(hand, rest, evidence, start, prior)?.energy)
+            let BundleFrame { start, prior, .. } = frame;
+            Ok(fitter.refinement.fit(hand, rest, frame.evidence(), start, prior)?.energy)
         };
         let energies: Vec<f64> = held.par_iter().map(of_frame).collect::<Result<_>>()?;
         Ok(energies.iter().sum())

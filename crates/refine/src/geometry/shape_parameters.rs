@@ -1,7 +1,7 @@
 //! The proportions of a hand as numbers that can be fitted.
 
 use glam::{DAffine3, DVec3};
-use phalanx_hand::{HandShape, Pose, PosedHand};
+use phalanx_hand::{HandShape, JOINTS, Pose, PosedHand};
 
 /// How a hand differs from a given one: the logarithms of a factor for its size and of one for every
 /// bone and radius, in the order of [`HandShape::scaled`].
@@ -34,6 +34,24 @@ impl ShapeParameters {
         let (size, each) = self.logarithms.split_first().expect("the size comes first");
         let mut each = each.iter();
         given.scaled(|| (size + each.next().copied().unwrap_or(0.0)).exp())
+    }
+
+    /// How each joint of the posed hand changes with each of the numbers, by differences.
+    pub(crate) fn joint_slopes(
+        &self,
+        given: &HandShape,
+        pose: &Pose,
+        rest: &DAffine3,
+    ) -> Vec<[DVec3; JOINTS]> {
+        const STEP: f64 = 1e-5;
+        let at = self.hand(given).pose(pose, rest).joints;
+        let of_number = |number: usize| {
+            let mut changed = self.clone();
+            changed.logarithms[number] += STEP;
+            let moved = changed.hand(given).pose(pose, rest).joints;
+            std::array::from_fn(|joint| (moved[joint] - at[joint]) / STEP)
+        };
+        (0..self.logarithms.len()).map(of_number).collect()
     }
 
     /// How each sphere of each primitive of the posed hand changes with the numbers, by differences.

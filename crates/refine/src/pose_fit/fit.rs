@@ -5,7 +5,7 @@ use phalanx_hand::{HandShape, Pose};
 
 use crate::error::{Error, Result};
 use crate::geometry::correspondence::ViewMatcher;
-use crate::observation::silhouette::SilhouetteObservation;
+use crate::observation::evidence::Evidence;
 use crate::pose_fit::settings::PoseFitSettings;
 use crate::posture_search::Search;
 use crate::priors::pose::PosePrior;
@@ -28,11 +28,13 @@ pub struct PoseFit {
     /// For each view, how much of its boundary the pose leaves unexplained: the mean robust squared
     /// distance over the most that it can be, 0 to 1.
     pub unexplained: Vec<f64>,
-    /// Root of the mean (robust) squared distance of the boundaries, px.
+    /// The same of each view with landmarks, of which a point counts by its confidence.
+    pub landmarks_unexplained: Vec<f64>,
+    /// Root of the mean (robust) squared distance of the boundaries, px; 0 of landmarks alone.
     pub boundary_rms_px: f64,
     /// Whether the hand's shape and the cameras' places were fitted too.
     pub nuisance_fitted: bool,
-    /// The energy: half the robust squared distances of the boundaries over their noise, and what the
+    /// The energy: half the robust squared distances of boundaries and landmarks over their noise, and what the
     /// prior and the joints' ranges say.
     pub energy: f64,
     /// Whether the last steps won nothing worth having.
@@ -73,20 +75,22 @@ impl PoseFitSettings {
     /// # Errors
     /// No evidence, a parameter out of its range, a hand that no one has or that a camera cannot
     /// draw.
-    pub fn fit(
+    pub fn fit<'e>(
         &self,
         hand: &HandShape,
         rest: &DAffine3,
-        evidence: &[SilhouetteObservation],
+        evidence: impl Into<Evidence<'e>>,
         start: &Pose,
         prior: &PosePrior,
     ) -> Result<PoseFit> {
         self.check()?;
+        let evidence = evidence.into();
         hand.validate()?;
         if evidence.is_empty() {
             return Err(Error::NoObservation);
         }
-        let mut views = vec![evidence.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?];
+        let mut views =
+            vec![evidence.silhouettes.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?];
         let mut problem = Problem {
             given: hand,
             rest,
@@ -132,6 +136,7 @@ impl PoseFitSettings {
             })?,
             ious,
             unexplained: best.unexplained(self.finest()),
+            landmarks_unexplained: best.landmarks_unexplained(),
             boundary_rms_px: best.boundary_rms_px(self.noise),
             energy: best.energy,
             nuisance_fitted: false,
@@ -262,13 +267,13 @@ fn search_postures(
     views: &mut [Vec<ViewMatcher>],
 ) -> Result<(State, f64)> {
     let Frame { evidence, prior } = problem.frames[0];
-    let motions: Vec<DAffine3> = (0..evidence.len())
+    let motions: Vec<DAffine3> = (0..evidence.silhouettes.len())
         .map(|view| problem.motion(&state.frames[0], &state.shared, view))
         .collect();
     let mut search = Search {
         hand: &state.shared.shape.hand(problem.given),
         rest: problem.rest,
-        evidence,
+        evidence: evidence.silhouettes,
         prior,
         motions: &motions,
         views: &mut views[0],

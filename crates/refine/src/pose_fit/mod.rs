@@ -3,6 +3,7 @@
 pub(crate) mod agreement;
 pub(crate) mod boundary_noise;
 pub(crate) mod fit;
+pub(crate) mod landmark_noise;
 pub(crate) mod near;
 pub(crate) mod posterior;
 pub(crate) mod screening;

@@ -5,7 +5,7 @@ use phalanx_hand::{HandShape, Pose};
 
 use crate::error::{Error, Result};
 use crate::geometry::correspondence::ViewMatcher;
-use crate::observation::silhouette::SilhouetteObservation;
+use crate::observation::evidence::Evidence;
 use crate::pose_fit::fit::PoseFit;
 use crate::pose_fit::settings::PoseFitSettings;
 use crate::priors::pose::PosePrior;
@@ -18,19 +18,21 @@ impl PoseFitSettings {
     ///
     /// # Errors
     /// As of [`fit`](Self::fit).
-    pub fn fit_near(
+    pub fn fit_near<'e>(
         &self,
         hand: &HandShape,
         rest: &DAffine3,
-        evidence: &[SilhouetteObservation],
+        evidence: impl Into<Evidence<'e>>,
         start: &Pose,
         prior: &PosePrior,
     ) -> Result<PoseFit> {
         self.check()?;
+        let evidence = evidence.into();
         hand.validate()?;
         let level =
             self.levels.last().filter(|_| !evidence.is_empty()).ok_or(Error::NoObservation)?;
-        let mut views = vec![evidence.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?];
+        let mut views =
+            vec![evidence.silhouettes.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?];
         let problem = Problem {
             given: hand,
             rest,

@@ -3,12 +3,11 @@
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
 use glam::{DAffine3, DVec3};
-use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
+use phalanx_hand::{Bone, Dof, HandShape, JOINTS, Pose};
 
 use crate::error::{Error, Result};
 use crate::geometry::correspondence::ViewMatcher;
-use crate::geometry::shape_parameters::ShapeParameters;
-use crate::observation::silhouette::SilhouetteObservation;
+use crate::observation::evidence::Evidence;
 use crate::pose_fit::settings::PoseFitSettings;
 use crate::priors::nuisance::ShapePrior;
 use crate::priors::pose::PosePrior;
@@ -29,21 +28,24 @@ impl PoseFitSettings {
     /// The deviations of a fitted pose (Laplace's approximation): from the curvature of the energy in
     /// pose and proportions together, where each proportion is known to a standard deviation of its
     /// logarithm, the size's first ([`BundleResult::hand_std`](crate::BundleResult::hand_std)). They are
-    /// honest where the evidence is [weighted](SilhouetteObservation::weighted) by how its boundaries err together.
+    /// honest where the evidence is weighted by how its boundaries
+    /// ([`weighted`](crate::SilhouetteObservation::weighted)) and its points
+    /// ([`weighted`](crate::LandmarkObservation::weighted)) err together.
     ///
     /// # Errors
     /// No evidence, another number of proportions than the hand has, silhouettes that leave
     /// directions open, or a hand that a camera cannot draw.
-    pub fn posterior(
+    pub fn posterior<'e>(
         &self,
         hand: &HandShape,
         rest: &DAffine3,
-        evidence: &[SilhouetteObservation],
+        evidence: impl Into<Evidence<'e>>,
         pose: &Pose,
         prior: &PosePrior,
         hand_std: &[f64],
     ) -> Result<Posterior> {
         self.check()?;
+        let evidence = evidence.into();
         if evidence.is_empty() {
             return Err(Error::NoObservation);
         }
@@ -60,7 +62,8 @@ impl PoseFitSettings {
             let reason = format!("is of {} shape, the hand has {count}", hand_std.len());
             return Err(Error::Precision { reason });
         }
-        let mut views = evidence.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?;
+        let mut views =
+            evidence.silhouettes.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?;
         // Views that were fitted with are believed.
         let loss = RobustLoss { disagreement: f64::INFINITY, ..self.finest() };
         let system = linearise(&problem, 0, &parameters, &shared, loss, &mut views)?;
@@ -85,7 +88,9 @@ impl PoseFitSettings {
         for (k, dof) in dofs.iter().enumerate() {
             std[dof.index()] = covariance[(k, k)].max(0.0).sqrt();
         }
-        let slopes = joint_slopes(hand, rest, pose, dofs, &shared.shape);
+        let slopes =
+            [joint_slopes(hand, rest, pose, dofs), shared.shape.joint_slopes(hand, pose, rest)]
+                .concat();
         let unknowns: Vec<usize> = (0..dofs.len()).chain(own..own + count).collect();
         Ok(Posterior { std, joints: spreads(&covariance, &unknowns, &slopes) })
     }
@@ -94,28 +99,19 @@ impl PoseFitSettings {
 /// A proportion is not known better than this, as a logarithm: a tenth of a per cent.
 const LEAST_STD: f64 = 1e-3;
 
-/// How each joint moves with each number of the pose and each proportion, by differences.
+/// How each joint moves with each number of the pose.
 fn joint_slopes(
     hand: &HandShape,
     rest: &DAffine3,
     pose: &Pose,
     dofs: &[Dof],
-    shape: &ShapeParameters,
 ) -> Vec<[DVec3; JOINTS]> {
-    const STEP: f64 = 1e-5;
-    let at = hand.pose(pose, rest).joints;
-    let slope = |moved: [DVec3; JOINTS]| std::array::from_fn(|j| (moved[j] - at[j]) / STEP);
-    let of_pose = dofs.iter().map(|&dof| {
-        let mut moved = *pose;
-        moved[dof] += STEP;
-        slope(hand.pose(&moved, rest).joints)
-    });
-    let of_hand = (0..shape.logarithms.len()).map(|number| {
-        let mut changed = shape.clone();
-        changed.logarithms[number] += STEP;
-        slope(changed.hand(hand).pose(pose, rest).joints)
-    });
-    of_pose.chain(of_hand).collect()
+    let (joints, twists) = (hand.pose(pose, rest).joints, hand.twists(pose, rest));
+    let slope = |dof: Dof, joint: usize| {
+        let is_moved = Bone::of_joint(joint).is_moved_by(dof);
+        if is_moved { twists.of(dof).velocity(joints[joint]) } else { DVec3::ZERO }
+    };
+    dofs.iter().map(|&dof| std::array::from_fn(|joint| slope(dof, joint))).collect()
 }
 
 /// The root of each joint's mean squared distance: of the trace of S C Sᵀ.

@@ -5,7 +5,7 @@ use phalanx_hand::{HandShape, Pose};
 
 use crate::error::{Error, Result};
 use crate::geometry::correspondence::ViewMatcher;
-use crate::observation::silhouette::SilhouetteObservation;
+use crate::observation::evidence::Evidence;
 use crate::pose_fit::settings::{Level, PoseFitSettings};
 use crate::priors::pose::PosePrior;
 use crate::solver::levenberg_marquardt::{ANY_ENERGY, State, Stop, levenberg_marquardt};
@@ -21,6 +21,8 @@ pub struct Screened {
     /// For each view, how much of its boundary the pose leaves unexplained: the mean robust squared
     /// distance over the most that it can be, 0 to 1.
     pub unexplained: Vec<f64>,
+    /// The same of each view with landmarks.
+    pub landmarks_unexplained: Vec<f64>,
 }
 
 impl PoseFitSettings {
@@ -29,21 +31,23 @@ impl PoseFitSettings {
     ///
     /// # Errors
     /// As of [`fit`](Self::fit).
-    pub fn screen(
+    pub fn screen<'e>(
         &self,
         hand: &HandShape,
         rest: &DAffine3,
-        evidence: &[SilhouetteObservation],
+        evidence: impl Into<Evidence<'e>>,
         starts: &[Pose],
         prior: &PosePrior,
         level: Level,
     ) -> Result<Vec<Screened>> {
         self.check()?;
+        let evidence = evidence.into();
         hand.validate()?;
         if evidence.is_empty() {
             return Err(Error::NoObservation);
         }
-        let mut views = vec![evidence.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?];
+        let mut views =
+            vec![evidence.silhouettes.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?];
         let problem = Problem {
             given: hand,
             rest,
@@ -63,6 +67,7 @@ impl PoseFitSettings {
                     pose: outcome.state.frames[0].pose,
                     energy: outcome.energy,
                     unexplained: outcome.unexplained(loss),
+                    landmarks_unexplained: outcome.landmarks_unexplained(),
                 }),
                 // A start that a camera cannot draw leads nowhere.
                 Err(Error::Render { .. }) => {}

@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 
 use glam::{DAffine3, DMat3, DVec3};
-use phalanx_hand::{Bone, Dof, PosedHand, Primitive, Twists};
+use phalanx_camera::Camera;
+use phalanx_hand::{Bone, Dof, JOINTS, PosedHand, Primitive, Twists};
 
 use crate::geometry::correspondence::Correspondence;
 use crate::geometry::self_collision::Penetration;
 use crate::geometry::shape_parameters::SphereSlope;
-use crate::observation::silhouette::SilhouetteObservation;
 use crate::priors::nuisance::ExtrinsicsCorrection;
 use crate::solver::normal_equations::Row;
 
@@ -25,33 +25,24 @@ pub(crate) struct Contact<'a> {
 
 /// Where a camera stands.
 pub(crate) struct Place<'a> {
-    evidence: &'a SilhouetteObservation,
+    camera: &'a Camera,
     /// The motion that its correction gives the hand.
     motion: Option<DAffine3>,
     /// What the motion turns about.
     pivot: DVec3,
-    /// Pixels that a millimetre is wide there, over the boundary's grain.
-    pub(crate) scale: f64,
     /// From the camera's directions to the world's, as they are before the motion.
     back: DMat3,
 }
 
 impl<'a> Place<'a> {
     pub(crate) fn new(
-        evidence: &'a SilhouetteObservation,
+        camera: &'a Camera,
         correction: Option<&ExtrinsicsCorrection>,
         pivot: DVec3,
     ) -> Self {
-        let camera = evidence.camera();
         let motion = correction.map(|correction| correction.motion(pivot));
         let turned = motion.map_or(DMat3::IDENTITY, |motion| motion.matrix3.transpose());
-        Self {
-            evidence,
-            motion,
-            pivot,
-            scale: evidence.pixels_per_mm(pivot),
-            back: turned * camera.extrinsics.rotation.transpose(),
-        }
+        Self { camera, motion, pivot, back: turned * camera.extrinsics.rotation.transpose() }
     }
 
     /// The primitives as they seem to stand.
@@ -62,12 +53,35 @@ impl<'a> Place<'a> {
         }
     }
 
-    pub(crate) fn contact<'p>(&self, found: &Correspondence, posed: &'p PosedHand) -> Contact<'p> {
+    /// A point of the world as it seems to stand.
+    pub(crate) fn moved(&self, point: DVec3) -> DVec3 {
+        self.motion.map_or(point, |motion| motion.transform_point3(point))
+    }
+
+    /// A joint, of which a residual changes with its place in the camera's frame by `slope`.
+    pub(crate) fn joint<'p>(
+        &self,
+        bones: &'p [Bone; 3],
+        joint: DVec3,
+        slope: DVec3,
+    ) -> Contact<'p> {
+        let nothing = (0.0, DVec3::ZERO);
+        let normal = self.back * slope;
+        Contact { bones, weights: [0.0; 3], points: [(1.0, joint), nothing, nothing], normal }
+    }
+
+    /// The contact of an edge where a millimetre is `scale` pixels wide.
+    pub(crate) fn contact<'p>(
+        &self,
+        found: &Correspondence,
+        posed: &'p PosedHand,
+        scale: f64,
+    ) -> Contact<'p> {
         let approach = &found.approach;
         let spheres = posed.primitives[found.primitive].spheres();
         let points = match approach.point {
             Some(point) => {
-                let world = self.evidence.camera().extrinsics.to_world(point);
+                let world = self.camera.extrinsics.to_world(point);
                 let motion = self.motion.unwrap_or(DAffine3::IDENTITY);
                 let nothing = (0.0, DVec3::ZERO);
                 [(1.0, motion.inverse().transform_point3(world)), nothing, nothing]
@@ -80,7 +94,7 @@ impl<'a> Place<'a> {
             bones: &posed.bones[found.primitive],
             weights: approach.weights,
             points,
-            normal: self.back * approach.normal * self.scale,
+            normal: self.back * approach.normal * scale,
         }
     }
 
@@ -178,6 +192,17 @@ impl Rows {
                 self.of_shape(&thick, &slopes[primitive], -1.0);
             }
         }
+    }
+
+    /// The slopes of a joint by the hand's proportions, by which all joints move as said.
+    pub(crate) fn of_joint(
+        &mut self,
+        contact: &Contact<'_>,
+        slopes: &[[DVec3; JOINTS]],
+        joint: usize,
+    ) {
+        let of_numbers = slopes.iter().map(|moved| contact.normal.dot(moved[joint])).enumerate();
+        self.shared.extend(of_numbers.filter(|(_, slope)| *slope != 0.0));
     }
 
     pub(crate) fn of_shape(

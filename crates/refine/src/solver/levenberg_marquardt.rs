@@ -49,6 +49,11 @@ impl Outcome {
         boundaries.map(|boundary| loss.unexplained(boundary.energy, boundary.count)).collect()
     }
 
+    /// For each view with landmarks of the first frame, how much of them is unexplained.
+    pub(crate) fn landmarks_unexplained(&self) -> Vec<f64> {
+        self.frames[0].landmarks.clone()
+    }
+
     /// Root of the mean robust squared distance of the boundaries, px, given their noise.
     pub(crate) fn boundary_rms_px(&self, noise: f64) -> f64 {
         let boundaries = || self.frames.iter().flat_map(|frame| &frame.boundaries);
@@ -151,7 +156,11 @@ pub(crate) fn ious(
     // Draws the state; what was drawn last may be a step that was not taken.
     linearise_all(problem, state, loss, views)?;
     let of_frame = |(frame, views): (&Frame<'_>, &Vec<ViewMatcher>)| {
-        views.iter().zip(frame.evidence).map(|(view, seen)| seen.iou(view.drawn())).collect()
+        views
+            .iter()
+            .zip(frame.evidence.silhouettes)
+            .map(|(view, seen)| seen.iou(view.drawn()))
+            .collect()
     };
     Ok(problem.frames.iter().zip(&*views).map(of_frame).collect())
 }
@@ -164,7 +173,8 @@ fn moved(problem: &Problem<'_>, state: &State, step: &Step) -> State {
             parameters.pose[dof] += step;
         }
         // Steps of margins are not taken: they are found anew for every pose.
-        let steps = step[frame.evidence.len()..].chunks_exact(ExtrinsicsCorrection::NUMBERS);
+        let steps =
+            step[frame.evidence.silhouettes.len()..].chunks_exact(ExtrinsicsCorrection::NUMBERS);
         parameters.corrections.iter_mut().zip(steps).for_each(|(own, step)| own.stepped(step));
     }
     let hand = step.shared.len() - ExtrinsicsCorrection::NUMBERS * state.shared.corrections.len();

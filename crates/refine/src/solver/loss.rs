@@ -18,7 +18,17 @@ pub(crate) struct RobustLoss {
     pub(crate) disagreement: f64,
 }
 
+/// Landmarks count as much further from their joints than boundaries do from theirs, each over its deviation:
+/// which joint a point belongs to is known, and where it is errs along two axes.
+const OF_LANDMARKS: f64 = 3.0;
+
 impl RobustLoss {
+    /// The measure of landmarks that are known to a standard deviation of `std` px.
+    pub(crate) fn of_landmarks(&self, std: f64) -> Self {
+        let reach = OF_LANDMARKS * self.reach / self.noise * std;
+        Self { reach, noise: std, every: 1, ..*self }
+    }
+
     pub(crate) fn energy(&self, residual: f64) -> f64 {
         let (s, r) = (self.reach * self.reach, residual * residual);
         0.5 * s * r / (s + r) * self.every as f64 / (self.noise * self.noise)

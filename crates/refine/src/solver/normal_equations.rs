@@ -20,6 +20,8 @@ pub(crate) struct NormalEquations {
     pub(crate) energy: f64,
     /// That of each view's boundary.
     pub(crate) boundaries: Vec<BoundaryEnergy>,
+    /// How much of each view's landmarks is unexplained.
+    pub(crate) landmarks: Vec<f64>,
     own_hessian: Vec<f64>,
     /// `own` × `shared`.
     mixed_hessian: Vec<f64>,
@@ -46,6 +48,7 @@ impl NormalEquations {
             shared,
             energy: 0.0,
             boundaries: Vec::new(),
+            landmarks: Vec::new(),
             own_hessian: vec![0.0; own * own],
             mixed_hessian: vec![0.0; own * shared],
             shared_hessian: vec![0.0; shared * shared],
@@ -110,6 +113,12 @@ impl NormalEquations {
     /// Begins the boundary of the next view.
     pub(crate) fn begin_boundary(&mut self, weights: [f64; 2]) {
         self.boundaries.push(BoundaryEnergy { weights, ..BoundaryEnergy::default() });
+    }
+
+    /// Adds the energy of a view's landmarks, so much of which is unexplained.
+    pub(crate) fn add_landmarks(&mut self, energy: f64, unexplained: f64) {
+        self.energy += energy;
+        self.landmarks.push(unexplained);
     }
 
     /// Adds any residual. Both rows are in ascending order.

@@ -4,7 +4,7 @@ use glam::DAffine3;
 use phalanx_hand::{HandShape, Pose};
 
 use crate::geometry::shape_parameters::ShapeParameters;
-use crate::observation::silhouette::SilhouetteObservation;
+use crate::observation::evidence::Evidence;
 use crate::priors::gaussian::GaussianPenalty;
 use crate::priors::nuisance::{CameraMotion, ExtrinsicsCorrection, ExtrinsicsPrior, ShapePrior};
 use crate::priors::pose::PosePrior;
@@ -12,7 +12,7 @@ use crate::priors::pose::PosePrior;
 /// One frame: what its cameras saw, and what is known of its pose.
 #[derive(Clone, Copy)]
 pub(crate) struct Frame<'a> {
-    pub(crate) evidence: &'a [SilhouetteObservation],
+    pub(crate) evidence: Evidence<'a>,
     pub(crate) prior: &'a PosePrior,
 }
 
@@ -50,7 +50,7 @@ pub(crate) struct Problem<'a> {
 impl Problem<'_> {
     /// The unknowns of a frame before anything is known but a pose.
     pub(crate) fn frame_parameters(&self, frame: usize, pose: &Pose) -> FrameParameters {
-        let views = self.frames[frame].evidence.len();
+        let views = self.frames[frame].evidence.views();
         let each =
             self.freedom.cameras.is_some_and(|nuisance| nuisance.motion == CameraMotion::PerFrame);
         FrameParameters {
@@ -61,7 +61,7 @@ impl Problem<'_> {
 
     /// What all frames share before anything is known.
     pub(crate) fn shared(&self) -> SharedParameters {
-        let views = self.frames.first().map_or(0, |frame| frame.evidence.len());
+        let views = self.frames.first().map_or(0, |frame| frame.evidence.views());
         let all =
             self.freedom.cameras.is_some_and(|nuisance| nuisance.motion == CameraMotion::Static);
         SharedParameters {

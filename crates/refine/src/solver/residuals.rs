@@ -6,6 +6,7 @@ use crate::geometry::self_collision::{Penetration, penetrations};
 use crate::priors::gaussian::GaussianPenalty;
 use crate::priors::nuisance::ExtrinsicsCorrection;
 use crate::solver::jacobian::{Place, Rows};
+use crate::solver::landmark_residuals::{LandmarkResiduals, Slots};
 use crate::solver::loss::RobustLoss;
 use crate::solver::normal_equations::NormalEquations;
 use crate::solver::problem::{Frame, FrameParameters, Problem, SharedParameters};
@@ -31,7 +32,7 @@ pub(crate) fn linearise(
         .hand
         .map(|_| shared.shape.slopes(problem.given, &parameters.pose, problem.rest, &posed));
     let numbers = prior.dofs().len();
-    let corrections = numbers + evidence.len();
+    let corrections = numbers + evidence.silhouettes.len();
     let of_hand = problem.freedom.hand.map_or(0, |_| shared.shape.logarithms.len());
     let of_cameras = ExtrinsicsCorrection::NUMBERS * shared.corrections.len();
     let own = corrections + ExtrinsicsCorrection::NUMBERS * parameters.corrections.len();
@@ -39,23 +40,23 @@ pub(crate) fn linearise(
     system.add_prior(prior, &parameters.pose);
     system.add_penalties(corrections, &problem.penalties_of(&parameters.corrections));
     let mut rows = Rows::new(prior.dofs());
-    let views_seen = evidence.len();
-    for (v, (view, evidence)) in views.iter_mut().zip(*evidence).enumerate() {
-        let correction = parameters.corrections.get(v).or(shared.corrections.get(v));
-        let place = Place::new(evidence, correction, problem.rest.translation);
-        view.match_boundary(&place.seen(&posed.primitives), evidence, loss.every)?;
-        let distances =
-            view.correspondences.iter().map(|found| place.scale * found.approach.distance);
+    let correction = |v: usize| parameters.corrections.get(v).or(shared.corrections.get(v));
+    let pivot = problem.rest.translation;
+    for (v, (view, seen)) in views.iter_mut().zip(evidence.silhouettes).enumerate() {
+        let place = Place::new(seen.camera(), correction(v), pivot);
+        let scale = seen.pixels_per_mm(pivot);
+        view.match_boundary(&place.seen(&posed.primitives), seen, loss.every)?;
+        let distances = view.correspondences.iter().map(|found| scale * found.approach.distance);
         let distances: Vec<f64> = distances.collect();
         let margin = loss.margin(&distances);
         let energies: f64 = distances.iter().map(|d| loss.energy(d - margin)).sum();
         let unexplained = loss.unexplained(energies, distances.len());
-        let belief = loss.belief(unexplained, views_seen);
-        system.begin_boundary(belief.map(|share| share * evidence.weight()));
+        let belief = loss.belief(unexplained, evidence.views());
+        system.begin_boundary(belief.map(|share| share * seen.weight()));
         system.add_penalties(numbers + v, &[GaussianPenalty::new(margin, loss.margin)]);
         for (found, distance) in view.correspondences.iter().zip(distances) {
             let residual = distance - margin;
-            let contact = place.contact(found, &posed);
+            let contact = place.contact(found, &posed, scale);
             rows.clear();
             rows.of_pose(&contact, &twists);
             rows.own.push((numbers + v, -1.0));
@@ -64,7 +65,7 @@ pub(crate) fn linearise(
                 rows.own.extend(place.row(&contact, first));
             }
             if let Some(slopes) = &slopes {
-                rows.of_shape(&contact, &slopes[found.primitive], place.scale);
+                rows.of_shape(&contact, &slopes[found.primitive], scale);
             }
             if !shared.corrections.is_empty() {
                 rows.shared
@@ -74,6 +75,24 @@ pub(crate) fn linearise(
             let weight = loss.weight(residual);
             system.add_boundary_residual(residual, energy, weight, &rows.own, &rows.shared);
         }
+    }
+    let joint_slopes = match problem.freedom.hand {
+        Some(_) if !evidence.landmarks.is_empty() => {
+            Some(shared.shape.joint_slopes(problem.given, &parameters.pose, problem.rest))
+        }
+        _ => None,
+    };
+    for (k, seen) in evidence.landmarks.iter().enumerate() {
+        let v = evidence.place_of(k);
+        let place = Place::new(seen.camera(), correction(v), pivot);
+        let of_place = ExtrinsicsCorrection::NUMBERS * v;
+        let slots = Slots {
+            own_place: (!parameters.corrections.is_empty()).then_some(corrections + of_place),
+            shared_place: (!shared.corrections.is_empty()).then_some(of_hand + of_place),
+            shape: joint_slopes.as_deref(),
+        };
+        let residuals = LandmarkResiduals::new(seen, place, &posed, loss);
+        residuals.add_to(&mut system, &posed, &twists, evidence.views(), &slots, &mut rows);
     }
     for penetration in penetrations(&posed) {
         rows.of_penetration(&penetration, &posed, &twists, slopes.as_deref());
@@ -86,8 +105,9 @@ pub(crate) fn linearise(
 #[cfg(test)]
 mod tests {
     use glam::DAffine3;
-    use phalanx_camera::{Camera, Rig};
-    use phalanx_hand::{Digit, Dof, HandShape, Pose};
+    use glam::DVec2;
+    use phalanx_camera::{Camera, Distortion, Rig};
+    use phalanx_hand::{Digit, Dof, HandShape, Landmark, Pose};
     use phalanx_render::Renderer;
     use proptest::prelude::*;
 
@@ -95,6 +115,8 @@ mod tests {
     use crate::geometry::correspondence::Correspondence;
     use crate::geometry::self_collision;
     use crate::geometry::sphere_hull::SphereHull;
+    use crate::observation::evidence::Evidence;
+    use crate::observation::landmarks::LandmarkObservation;
     use crate::observation::silhouette::SilhouetteObservation;
     use crate::priors::nuisance::{CameraMotion, ExtrinsicsPrior, ShapePrior};
     use crate::priors::pose::PosePrior;
@@ -115,6 +137,25 @@ mod tests {
         SilhouetteObservation::new(camera, &mask.into()).unwrap()
     }
 
+    /// The joints as a camera with a lens sees them, each off its place, and some not seen.
+    fn points(
+        camera: &Camera,
+        hand: &HandShape,
+        pose: &Pose,
+        rest: &DAffine3,
+    ) -> LandmarkObservation {
+        let mut camera = camera.clone();
+        camera.intrinsics.lens = Distortion { k1: -0.1, p1: 0.01, ..Distortion::NONE }.into();
+        let mut joints = hand.pose(pose, rest).joints.into_iter().enumerate();
+        let landmarks = std::array::from_fn(|_| {
+            let (k, joint) = joints.next()?;
+            let off = DVec2::from_angle(k as f64) * (0.3 * k as f64);
+            let at = camera.project(joint)? + off;
+            (k % 5 != 3).then_some(Landmark { at, confidence: 1.0 - 0.03 * k as f64 })
+        });
+        LandmarkObservation::new(&camera, &landmarks, 1.5).unwrap().weighted(0.7)
+    }
+
     /// The energy of the boundary when the same rays are held against the same primitives.
     fn energy(
         problem: &Problem<'_>,
@@ -126,16 +167,28 @@ mod tests {
         let hand = shared.shape.hand(problem.given);
         let posed = hand.pose(&parameters.pose, problem.rest);
         let mut energy = self_collision::energy(&posed);
-        for (v, (view, evidence)) in views.iter().zip(problem.frames[0].evidence).enumerate() {
-            let correction = parameters.corrections.get(v).or(shared.corrections.get(v));
-            let place = Place::new(evidence, correction, problem.rest.translation);
+        let Evidence { silhouettes, landmarks } = problem.frames[0].evidence;
+        let pivot = problem.rest.translation;
+        let correction = |v: usize| parameters.corrections.get(v).or(shared.corrections.get(v));
+        for (k, seen) in landmarks.iter().enumerate() {
+            let motion = problem.motion(parameters, shared, problem.frames[0].evidence.place_of(k));
+            let loss = loss.of_landmarks(seen.std());
+            for (point, joint) in seen.points().iter().zip(posed.joints) {
+                let Some(point) = point else { continue };
+                let drawn = seen.camera().project(motion.transform_point3(joint)).unwrap();
+                energy += seen.weight() * point.confidence * loss.energy(drawn.distance(point.at));
+            }
+        }
+        for (v, (view, evidence)) in views.iter().zip(silhouettes).enumerate() {
+            let place = Place::new(evidence.camera(), correction(v), pivot);
+            let scale = evidence.pixels_per_mm(pivot);
             let extrinsics = &evidence.camera().extrinsics;
             let to_camera =
                 DAffine3::from_mat3_translation(extrinsics.rotation, extrinsics.translation);
             let primitives = place.seen(&posed.primitives);
             let distance = |found: &Correspondence| {
                 let hull = SphereHull::new(&primitives[found.primitive].moved(&to_camera));
-                place.scale * hull.closest_approach(found.ray).distance
+                scale * hull.closest_approach(found.ray).distance
             };
             let distances: Vec<f64> = view.correspondences.iter().map(distance).collect();
             let margin = loss.margin(&distances);
@@ -145,8 +198,15 @@ mod tests {
         energy
     }
 
+    #[derive(Debug, Clone, Copy)]
+    enum SeenAs {
+        Silhouettes,
+        Landmarks,
+        Both,
+    }
+
     proptest! {
-        #![proptest_config(crate::property::cases(12))]
+        #![proptest_config(crate::property::cases(24))]
 
         #[test]
         fn the_gradient_is_that_of_the_energy(
@@ -155,6 +215,9 @@ mod tests {
             global in prop::array::uniform8(-0.1..0.1_f64),
             moves in prop_oneof![Just(CameraMotion::Static), Just(CameraMotion::PerFrame)],
             crossed in any::<bool>(),
+            seen_as in prop_oneof![
+                Just(SeenAs::Silhouettes), Just(SeenAs::Landmarks), Just(SeenAs::Both),
+            ],
         ) {
             let (rig, given) = (rig(), HandShape::adult());
             let rest = rig.volume.rest_frame();
@@ -173,12 +236,22 @@ mod tests {
             }
             let evidence: Vec<SilhouetteObservation> =
                 rig.cameras.iter().map(|camera| seen(camera, &given, &truth, &rest)).collect();
+            let mut cameras = rig.cameras.clone();
+            // One of a camera without a silhouette.
+            cameras[0].name = "another".to_owned();
+            let landmarks: Vec<LandmarkObservation> =
+                cameras.iter().map(|camera| points(camera, &given, &truth, &rest)).collect();
+            let evidence = match seen_as {
+                SeenAs::Silhouettes => Evidence::from(&evidence),
+                SeenAs::Landmarks => Evidence::from(&landmarks),
+                SeenAs::Both => Evidence { silhouettes: &evidence, landmarks: &landmarks[..2] },
+            };
             // So vague that only the boundary has a say.
             let prior = PosePrior::independent(pose, &[1e6; Dof::COUNT]).unwrap();
             let problem = Problem {
                 given: &given,
                 rest: &rest,
-                frames: vec![Frame { evidence: &evidence, prior: &prior }],
+                frames: vec![Frame { evidence, prior: &prior }],
                 freedom: FreeParameters {
                     hand: Some(ShapePrior { size: 1e6, each: 1e6 }),
                     cameras: Some(ExtrinsicsPrior { turn: 1e6, shift: 1e6, motion: moves }),
@@ -187,7 +260,7 @@ mod tests {
             let loss = RobustLoss { reach: 3.0, noise: 0.5, margin: 1.0, every: 7, disagreement: f64::INFINITY };
             let (parameters, shared) = (problem.frame_parameters(0, &pose), problem.shared());
             let mut views: Vec<ViewMatcher> =
-                evidence.iter().map(|evidence| ViewMatcher::new(evidence).unwrap()).collect();
+                evidence.silhouettes.iter().map(|own| ViewMatcher::new(own).unwrap()).collect();
             let system = linearise(&problem, 0, &parameters, &shared, loss, &mut views).unwrap();
             // Where a ray goes just through the axis of a solid, distances have a kink.
             let within = |slope: f64, gradient: f64| {
@@ -235,7 +308,7 @@ mod tests {
                 let alike = number == 0 || agree(slope, gradient);
                 prop_assert!(alike, "bone {number}: {slope:?} is not {gradient}");
             }
-            for v in 0..evidence.len() {
+            for v in 0..evidence.views() {
                 let slope = slope(&|parameters, shared, step| {
                     let corrections = match moves {
                         CameraMotion::Static => &mut shared.corrections,
@@ -246,7 +319,7 @@ mod tests {
                 let gradient = match moves {
                     CameraMotion::Static => system.shared_gradient()[bones + 6 * v],
                     CameraMotion::PerFrame => {
-                        system.own_gradient()[Dof::COUNT + evidence.len() + 6 * v]
+                        system.own_gradient()[Dof::COUNT + evidence.silhouettes.len() + 6 * v]
                     }
                 };
                 prop_assert!(agree(slope, gradient), "camera {v}: {slope:?} is not {gradient}");

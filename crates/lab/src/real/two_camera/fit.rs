@@ -77,7 +77,12 @@ impl Learnt {
         let step = starts.len().div_ceil(CALIBRATED_ON).max(1);
         let frame = |(start, refined): (&Start, &PoseFit)| -> Result<BundleFrame> {
             let Start { evidence, prior, .. } = start.clone();
-            Ok(BundleFrame { observations: evidence, start: refined.pose, prior })
+            Ok(BundleFrame {
+                observations: evidence,
+                landmarks: Vec::new(),
+                start: refined.pose,
+                prior,
+            })
         };
         let frames: Vec<BundleFrame> =
             starts.iter().zip(refined).step_by(step).map(frame).collect::<Result<_>>()?;
