@@ -92,7 +92,7 @@ fn pose(moment: usize) -> Pose {
 fn drawn(rig: &Rig, hand: &HandShape, pose: &Pose) -> Result<TakeFrame> {
     let rest = rig.volume.rest_frame();
     let mask = |camera: &Camera| Ok(Some(draw_silhouette(camera, hand, pose, &rest)?));
-    Ok(TakeFrame { masks: rig.cameras.iter().map(mask).collect::<Result<_>>()? })
+    Ok(TakeFrame::of_masks(rig.cameras.iter().map(mask).collect::<Result<_>>()?))
 }
 
 fn written(rig: &Rig, fit: &TakeFit) -> Take {

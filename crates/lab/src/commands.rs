@@ -38,7 +38,7 @@ pub enum Command {
     Doubts(doubts::Arguments),
     /// Evaluate real takes, by cameras used, input and method.
     #[command(name = "eval-real")]
-    EvalReal(real::Arguments),
+    EvalReal(Box<real::Arguments>),
     /// Compare ways of choosing which samples to keep, and write docs/results/selection.md.
     Selection(selection::Arguments),
     /// Compare ways of naming several poses for one picture, and write docs/results/hypotheses.md.

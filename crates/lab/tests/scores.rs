@@ -120,8 +120,15 @@ fn row(answer: impl Fn(usize) -> anyhow::Result<Found>) -> Row {
     let reference = Reference::read(&folder, &take.camera_names()).unwrap();
     let frames = take.frames(&[0, 1], Input::Masks);
     assert_eq!(frames.len(), FRAMES);
-    let (views, input, spoil) = (&[0, 1], Input::Masks, None);
-    let sequence = Sequence { take: &take, views, input, frames: &frames, spoil, lose: None };
+    let sequence = Sequence {
+        take: &take,
+        views: &[0, 1],
+        input: Input::Masks,
+        frames: &frames,
+        spoil: None,
+        lose: None,
+        landmarks: &reference.landmarks,
+    };
     let outcome = |frame| Outcome { found: answer(frame), cpu_ms: Some(frame as f64) };
     let outcomes: Vec<Outcome> = (0..FRAMES).map(outcome).collect();
     let scores = Scorer::new(&reference).frames(&sequence, &outcomes).unwrap();

@@ -179,6 +179,17 @@ pub enum Error {
         /// How many pictures were given.
         found: usize,
     },
+    /// A frame with landmarks of other than its cameras.
+    #[error(
+        "expected landmarks, or none, of each camera, {} ({}), found {found}",
+        cameras.len(), cameras.join(", ")
+    )]
+    LandmarkCount {
+        /// The cameras in the order in which landmarks are expected.
+        cameras: Vec<String>,
+        /// How many of them landmarks were given for.
+        found: usize,
+    },
     /// A picture whose shape is not that of its camera's image.
     #[error(
         "camera '{camera}': the picture is {}×{}, which is not the shape of the camera's {}×{}; \

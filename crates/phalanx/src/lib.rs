@@ -31,7 +31,7 @@ pub use features::describer::{
 };
 pub use features::descriptor::{Descriptor, ExtraFeatures, describe_scenes};
 pub use fitting::{
-    Delay, FitDoubt, FrameFit, Missing, Proportions, TakeFit, TakeFrame, TakeSettings,
+    Delay, FitDoubt, FrameFit, LandmarkFit, Missing, Proportions, TakeFit, TakeFrame, TakeSettings,
     TrackSettings, TrackedFrame, Tracker, TrackerState, ViewFit, VolumeEstimate, estimate_volume,
     fit_frame, fit_take,
 };

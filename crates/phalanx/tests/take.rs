@@ -1,73 +1,16 @@
 //! Whole takes of drawn hands, from masks and cameras alone.
 
-use glam::{DAffine3, DMat3, DVec3};
+mod drawn;
+
+use drawn::{Drawn, cameras, drawn, hand, mean_error};
+use glam::{DMat3, DVec3};
 use phalanx::{
-    Delay, Error, FitDoubt, ItemRng, Missing, NoProgress, Proportions, TakeFrame, TakeSettings,
+    Delay, Error, FitDoubt, Missing, NoProgress, Proportions, TakeFrame, TakeSettings,
     TrackSettings, TrackedFrame, Tracker, estimate_volume, fit_frame, fit_take,
 };
-use phalanx_camera::{Camera, Extrinsics, Intrinsics, Rig};
-use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose, Side};
-use phalanx_render::Renderer;
+use phalanx_camera::{Camera, Extrinsics, Intrinsics};
+use phalanx_hand::{HandShape, Side};
 use phalanx_segmentation::Mask;
-
-/// A drawn take: cameras on three sides of a desk, and a hand that is no mean one.
-struct Drawn {
-    cameras: Vec<Camera>,
-    frames: Vec<TakeFrame>,
-    joints: Vec<[DVec3; JOINTS]>,
-}
-
-/// The desk's cameras, with pictures that a hand is small in.
-fn cameras() -> Vec<Camera> {
-    let rig = Rig::from_toml(include_str!("../fixtures/desk.toml")).expect("a rig");
-    let wide = |camera: &Camera| {
-        let Intrinsics { fx, .. } = camera.intrinsics;
-        camera.with_intrinsics(Intrinsics::pinhole(320, 240, 1.6 * fx))
-    };
-    rig.cameras.iter().map(wide).collect()
-}
-
-/// Someone's hand: 6 % longer than the mean one, its bones up to 4 % more or less.
-fn hand() -> HandShape {
-    let mut random = ItemRng::new(5, 0);
-    HandShape::adult().scaled(|| 1.06 * random.between(0.96, 1.04))
-}
-
-/// Fingers that open and close in turn while the hand turns a little.
-fn pose(frame: usize) -> Pose {
-    let mut pose = Pose::REST;
-    let at = frame as f64;
-    for (k, finger) in Digit::FINGERS.into_iter().enumerate() {
-        let bent = 0.5 - 0.5 * (0.8 * at + 1.5 * k as f64).cos();
-        let angles = [0.0, 0.9 * bent, 1.3 * bent, 0.8 * bent];
-        finger.dofs().into_iter().zip(angles).for_each(|(dof, angle)| pose[dof] = angle);
-    }
-    pose[Dof::ThetaX] = 0.15 * (0.5 * at).sin();
-    pose[Dof::ThetaZ] = 0.6 + 0.3 * (0.4 * at).cos();
-    [pose[Dof::TX], pose[Dof::TY], pose[Dof::TZ]] = [4.0 * at, 3.0 * (0.7 * at).sin(), -10.0];
-    pose
-}
-
-fn drawn(count: usize) -> Drawn {
-    let (cameras, hand, rest) = (cameras(), hand(), DAffine3::IDENTITY);
-    let mut renderers: Vec<Renderer> =
-        cameras.iter().map(|camera| Renderer::new(camera).expect("a camera")).collect();
-    let (mut frames, mut joints) = (Vec::new(), Vec::new());
-    for frame in 0..count {
-        let posed = hand.pose(&pose(frame), &rest);
-        let mut mask = |renderer: &mut Renderer| {
-            let drawn = renderer.silhouette(&posed.primitives);
-            Some(drawn.expect("a hand before the camera").into())
-        };
-        frames.push(TakeFrame { masks: renderers.iter_mut().map(&mut mask).collect() });
-        joints.push(posed.joints);
-    }
-    Drawn { cameras, frames, joints }
-}
-
-fn mean_error(found: &[DVec3; JOINTS], truth: &[DVec3; JOINTS]) -> f64 {
-    found.iter().zip(truth).map(|(a, b)| a.distance(*b)).sum::<f64>() / JOINTS as f64
-}
 
 #[test]
 fn a_take_is_fitted_from_masks_alone() {
@@ -135,7 +78,7 @@ fn a_left_hand_is_fitted_as_a_right_one_in_a_mirror() {
     let flip = |mask: &Mask| image::imageops::flip_horizontal(&**mask).into();
     let flipped = |mask: &Option<Mask>| mask.as_ref().map(flip);
     let of_frame =
-        |frame: &TakeFrame| TakeFrame { masks: frame.masks.iter().map(flipped).collect() };
+        |frame: &TakeFrame| TakeFrame::of_masks(frame.masks.iter().map(flipped).collect());
     let frames: Vec<TakeFrame> = frames.iter().map(of_frame).collect();
     let hand = HandShape { side: Side::Left, ..HandShape::adult() };
     let settings = TakeSettings { hand, ..TakeSettings::default() };
@@ -171,7 +114,7 @@ fn a_hand_that_is_cut_off_is_doubted() {
     for frame in &frames {
         let [one, other] = [first, second].map(|k| frame.masks[k].clone().expect("drawn"));
         let (camera, part) = cut(&cameras[first], &one, column);
-        seen.push((camera, TakeFrame { masks: vec![Some(part), Some(other)] }));
+        seen.push((camera, TakeFrame::of_masks(vec![Some(part), Some(other)])));
     }
     let both = [seen[0].0.clone(), cameras[second].clone()];
     let frames: Vec<TakeFrame> = seen.into_iter().map(|(_, frame)| frame).collect();
@@ -185,10 +128,10 @@ fn a_hand_that_is_cut_off_is_doubted() {
 #[test]
 fn a_take_without_a_hand_is_an_error() {
     let cameras = cameras();
-    let nothing = TakeFrame { masks: vec![Some(Mask::new(320, 240)), None, None] };
+    let nothing = TakeFrame::of_masks(vec![Some(Mask::new(320, 240)), None, None]);
     let fit = fit_take(&cameras, &[nothing], &TakeSettings::default(), &NoProgress);
     assert!(matches!(fit, Err(Error::NoHand)));
-    let short = TakeFrame { masks: vec![None] };
+    let short = TakeFrame::of_masks(vec![None]);
     let volume = estimate_volume(&cameras, &[short], &HandShape::adult());
     assert!(matches!(volume, Err(Error::PictureCount { .. })));
 }
@@ -244,7 +187,7 @@ fn a_camera_that_is_lost_makes_poses_less_certain_and_none_makes_them_unseen() {
 fn a_hand_that_has_not_been_seen_yet_has_no_pose_and_time_goes_on() {
     let Drawn { cameras, frames, .. } = drawn(1);
     let mut tracker = Tracker::new(&cameras, &TrackSettings::default()).expect("a hand");
-    let nothing = TakeFrame { masks: vec![None; cameras.len()] };
+    let nothing = TakeFrame::of_masks(vec![None; cameras.len()]);
     assert_eq!(tracker.push(0.0, &nothing).expect("a frame"), None);
     let first = tracker.push(0.1, &frames[0]).expect("a frame").expect("the one before");
     assert_eq!(first, TrackedFrame { time: 0.0, fit: None });

@@ -88,7 +88,7 @@ impl<'a> Reader<'a> {
             };
             masks.push(mask.map_err(named).ok());
         }
-        TakeFrame { masks }
+        TakeFrame::of_masks(masks)
     }
 }
 

@@ -52,7 +52,7 @@ pub(crate) fn simulate(rig: &Rig, progress: &dyn Progress) -> Result<Simulation>
         rig.cameras.iter().map(|camera| draw_silhouette(camera, &hand, pose, &rest).ok()).collect()
     };
     let frames: Vec<TakeFrame> =
-        poses.iter().map(|pose| TakeFrame { masks: masks(pose) }).collect();
+        poses.iter().map(|pose| TakeFrame::of_masks(masks(pose))).collect();
     let settings = TakeSettings { hand: hand.clone(), proportions: Proportions::Given };
     let fit = fit_take(&rig.cameras, &frames, &settings, progress)?;
     let trusted: Vec<_> =

@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec2, DVec3};
 use image::DynamicImage;
 use phalanx::Progress;
 use phalanx_camera::Camera;
-use phalanx_hand::{HandShape, JOINTS, Pose, Primitive};
+use phalanx_hand::{HandShape, JOINTS, Landmark, Pose, Primitive};
 
 use super::deviation::{PoseCovariance, joint_deviations};
 use super::frame::FrameName;
@@ -36,6 +36,8 @@ pub struct Sequence<'a> {
     pub spoil: Option<(&'a Spoil, &'a [Landmarks])>,
     /// Which camera is lost in some frames.
     pub lose: Option<&'a Lose>,
+    /// The landmarks that may be looked at, camera by camera of the take.
+    pub landmarks: &'a [Landmarks],
 }
 
 impl Sequence<'_> {
@@ -50,18 +52,34 @@ impl Sequence<'_> {
         self.lose.is_some_and(|lose| lose.concerns(camera, number, self.frames.len()))
     }
 
-    /// The pictures of the frame of a number, one for each camera.
+    /// The landmarks of the frame of a number, one for each camera; none of an input without any.
+    pub fn landmarks_of(&self, number: usize) -> Vec<Option<phalanx_hand::Landmarks>> {
+        if !self.input.has_landmarks() {
+            return Vec::new();
+        }
+        let of_view = |(view, &camera): (usize, &usize)| {
+            let points = self.landmarks[camera].get(&self.frames[number])?;
+            let is_seen = !self.is_lost(view, number);
+            is_seen.then(|| points.map(|point| point.map(Landmark::sure)))
+        };
+        self.views.iter().enumerate().map(of_view).collect()
+    }
+
+    /// The pictures of the frame of a number, one for each camera; none where landmarks alone are looked at.
     ///
     /// # Errors
     /// A picture that cannot be read; it names the file.
     pub fn pictures(&self, number: usize) -> Result<Vec<DynamicImage>> {
+        if self.input == Input::Landmarks {
+            return Ok(Vec::new());
+        }
         self.views.iter().map(|&view| self.picture(view, number)).collect()
     }
 
     fn picture(&self, view: usize, number: usize) -> Result<DynamicImage> {
         let camera = &self.take.cameras[view];
         let spoil = self.spoil.filter(|(spoil, _)| {
-            self.input == Input::Masks && spoil.concerns(&camera.camera.name, number)
+            self.input != Input::Photographs && spoil.concerns(&camera.camera.name, number)
         });
         let Some((spoil, landmarks)) = spoil else {
             return camera.picture(&self.frames[number], self.input);
@@ -129,8 +147,8 @@ pub trait Method {
     fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>>;
 }
 
-/// Looks at every frame alone, in parallel, and measures the time of each on its one thread. `memory` is
-/// made once for each thread.
+/// Looks at every frame alone, by its number and its pictures, in parallel, and measures the time of each on its
+/// one thread. `memory` is made once for each thread.
 ///
 /// # Errors
 /// Pictures that cannot be read.
@@ -138,7 +156,7 @@ pub fn each_frame<M>(
     sequence: &Sequence<'_>,
     progress: &dyn Progress,
     memory: impl Fn() -> M + Sync,
-    look: impl Fn(&mut M, &[DynamicImage]) -> Result<Found> + Sync,
+    look: impl Fn(&mut M, usize, &[DynamicImage]) -> Result<Found> + Sync,
 ) -> Result<Vec<Outcome>> {
     let frames = sequence.frames;
     let (next, outcomes) = (AtomicUsize::new(0), Mutex::new(Vec::with_capacity(frames.len())));
@@ -150,7 +168,7 @@ pub fn each_frame<M>(
                 return Ok(());
             }
             let pictures = sequence.pictures(number)?;
-            let (ms, found) = thread_ms(|| look(&mut memory, &pictures));
+            let (ms, found) = thread_ms(|| look(&mut memory, number, &pictures));
             let outcome = Outcome { found, cpu_ms: Some(ms) };
             let mut outcomes = outcomes.lock().unwrap_or_else(PoisonError::into_inner);
             outcomes.push((number, outcome));

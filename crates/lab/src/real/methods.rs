@@ -52,6 +52,7 @@ impl MethodName {
     pub fn inputs(self) -> &'static [Input] {
         match self {
             Self::Landmarks => &[Input::Photographs],
+            Self::Estimate | Self::Refined => &[Input::Masks, Input::Photographs],
             _ => &Input::ALL,
         }
     }

@@ -79,6 +79,9 @@ pub struct Arguments {
     /// joins the hand), thumb (alone), other (the mask of another frame), nothing.
     #[arg(long, value_name = "KIND:CAMERA")]
     spoil: Option<Spoil>,
+    /// Look at no landmarks of this camera, which then tests those of the others.
+    #[arg(long, value_name = "CAMERA")]
+    without_landmarks: Option<String>,
     /// Lose a camera in the second and in the last quarter of the frames.
     #[arg(long, value_name = "CAMERA")]
     lose: Option<Lose>,
@@ -173,6 +176,7 @@ struct Evaluation<'a> {
 impl Evaluation<'_> {
     /// A line for each of the cameras used, the input and the method; notes beside them.
     fn run(&self, reported: &mut Reported, notes: &mut Vec<String>) -> Result<()> {
+        let landmarks = self.landmarks()?;
         for views in subsets::of(&self.take.camera_names(), &self.arguments.cameras)? {
             let jobs = self.jobs(&views);
             let methods: Vec<MethodName> = jobs.iter().map(|job| job.method).collect();
@@ -186,6 +190,7 @@ impl Evaluation<'_> {
                     frames,
                     spoil: self.spoil(),
                     lose: self.arguments.lose.as_ref(),
+                    landmarks: &landmarks,
                 };
                 notes.extend(self.line(&sequence, &*prepared.method(*method), reported)?);
                 self.arguments.write(reported)?;
@@ -218,22 +223,34 @@ impl Evaluation<'_> {
         Input::ALL.into_iter().flat_map(of_input).collect()
     }
 
+    /// The landmarks that may be looked at.
+    fn landmarks(&self) -> Result<Vec<Landmarks>> {
+        let mut landmarks = self.reference.landmarks.clone();
+        if let Some(camera) = &self.arguments.without_landmarks {
+            let view = self.take.camera_names().iter().position(|name| name == camera);
+            let view = view.with_context(|| format!("{}: no camera '{camera}'", self.take.name))?;
+            landmarks[view].clear();
+        }
+        Ok(landmarks)
+    }
+
     fn spoil(&self) -> Option<(&Spoil, &[Landmarks])> {
         Some((self.arguments.spoil.as_ref()?, &self.reference.landmarks))
     }
 
     /// The frames that are asked for; of landmarks those that any of the cameras has some of.
     fn frames(&self, method: MethodName, views: &[usize], input: Input) -> Vec<FrameName> {
-        let frames = match method {
-            MethodName::Landmarks if views.len() < 2 => Vec::new(),
-            MethodName::Landmarks => {
-                let seen = views.iter().flat_map(|&view| self.reference.landmarks[view].keys());
-                let mut frames: Vec<FrameName> = seen.cloned().collect();
-                frames.sort();
-                frames.dedup();
-                frames
-            }
-            _ => self.take.frames(views, input),
+        let is_of_landmarks = method == MethodName::Landmarks || input == Input::Landmarks;
+        let frames = if is_of_landmarks && views.len() < 2 {
+            Vec::new()
+        } else if is_of_landmarks {
+            let seen = views.iter().flat_map(|&view| self.reference.landmarks[view].keys());
+            let mut frames: Vec<FrameName> = seen.cloned().collect();
+            frames.sort();
+            frames.dedup();
+            frames
+        } else {
+            self.take.frames(views, input)
         };
         let ranges = self.arguments.frames.as_ref();
         let wanted = frames.into_iter().filter(|frame| ranges.is_none_or(|r| r.hold(frame)));
@@ -253,6 +270,12 @@ impl Evaluation<'_> {
         let title = match &self.arguments.spoil {
             Some(spoil) => format!("{title}-{spoil}"),
             None => title,
+        };
+        let title = match &self.arguments.without_landmarks {
+            Some(camera) if sequence.input.has_landmarks() => {
+                format!("{title}-without-{camera}")
+            }
+            _ => title,
         };
         let title = match &self.arguments.lose {
             Some(lose) => format!("{title}-{lose}"),

@@ -57,12 +57,12 @@ impl Product {
         workspace: &mut Workspace,
     ) -> Result<Estimate> {
         Ok(match input {
-            Input::Masks => {
+            Input::Masks | Input::MasksAndLandmarks => {
                 let masks: Vec<Mask> = pictures.iter().map(phalanx::mask_from).collect();
                 let masks: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
                 self.estimator.estimate(&masks, workspace)?
             }
-            Input::Photographs => {
+            Input::Photographs | Input::Landmarks => {
                 let images: Vec<RgbImage> = pictures.iter().map(phalanx::photograph_from).collect();
                 let images: Vec<Picture<'_>> =
                     images.iter().map(|image| Picture::Photograph(image, &self.skin)).collect();
@@ -112,7 +112,7 @@ impl Method for Estimated<'_> {
     fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>> {
         let Product { estimator, .. } = self.0;
         let rest = estimator.rig().volume.rest_frame();
-        each_frame(sequence, progress, Workspace::default, |workspace, pictures| {
+        each_frame(sequence, progress, Workspace::default, |workspace, _, pictures| {
             let estimate = self.0.estimate(sequence.input, pictures, workspace)?;
             let covariance =
                 PoseCovariance::independent(&estimate.std.map(Option::unwrap_or_default));
@@ -131,7 +131,7 @@ impl Method for RefinedFrames<'_> {
     }
 
     fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>> {
-        each_frame(sequence, progress, Workspace::default, |workspace, pictures| {
+        each_frame(sequence, progress, Workspace::default, |workspace, _, pictures| {
             let estimate = self.0.estimate(sequence.input, pictures, workspace)?;
             self.0.refine(estimate)
         })

@@ -11,7 +11,7 @@ pub struct Row {
     pub take: String,
     /// The names of the cameras that were used.
     pub cameras: Vec<String>,
-    /// `masks` or `photographs`.
+    /// `masks`, `photographs`, `landmarks` or `masks+landmarks`.
     pub input: &'static str,
     /// The method's name.
     pub method: &'static str,

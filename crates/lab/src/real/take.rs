@@ -34,18 +34,31 @@ pub enum Input {
     Masks,
     /// Colour photographs.
     Photographs,
+    /// A detector's landmarks.
+    Landmarks,
+    /// Masks, and a detector's landmarks.
+    #[value(name = "masks+landmarks")]
+    MasksAndLandmarks,
 }
 
 impl Input {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Masks, Self::Photographs];
+    /// All of them.
+    pub const ALL: [Self; 4] =
+        [Self::Masks, Self::Photographs, Self::Landmarks, Self::MasksAndLandmarks];
 
     /// Its name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Masks => "masks",
             Self::Photographs => "photographs",
+            Self::Landmarks => "landmarks",
+            Self::MasksAndLandmarks => "masks+landmarks",
         }
+    }
+
+    /// Whether landmarks are looked at.
+    pub fn has_landmarks(self) -> bool {
+        matches!(self, Self::Landmarks | Self::MasksAndLandmarks)
     }
 }
 
@@ -157,10 +170,11 @@ impl TakeCamera {
         Ok(Self { camera, masks, colour, grey })
     }
 
+    /// The pictures of an input; landmarks are of photographs.
     fn pictures(&self, input: Input) -> &Pictures {
         match input {
-            Input::Masks => &self.masks,
-            Input::Photographs => &self.colour,
+            Input::Masks | Input::MasksAndLandmarks => &self.masks,
+            Input::Photographs | Input::Landmarks => &self.colour,
         }
     }
 

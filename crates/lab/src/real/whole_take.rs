@@ -18,8 +18,8 @@ use crate::clock::timed;
 /// The fits of a take through some cameras, each made when it is first asked for.
 pub struct Fits {
     skin: SkinModel,
-    masks: OnceLock<Fitted>,
-    photographs: OnceLock<Fitted>,
+    /// One for each input.
+    fits: [OnceLock<Fitted>; Input::ALL.len()],
 }
 
 /// A fit, or why there is none, and the CPU time of a frame, ms.
@@ -31,15 +31,11 @@ struct Fitted {
 impl Fits {
     /// Nothing is fitted yet.
     pub fn new() -> Self {
-        let (masks, photographs) = (OnceLock::new(), OnceLock::new());
-        Self { skin: SkinModel::builtin(), masks, photographs }
+        Self { skin: SkinModel::builtin(), fits: [const { OnceLock::new() }; Input::ALL.len()] }
     }
 
     fn of(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<&Fitted> {
-        let cell = match sequence.input {
-            Input::Masks => &self.masks,
-            Input::Photographs => &self.photographs,
-        };
+        let cell = &self.fits[sequence.input as usize];
         if let Some(fitted) = cell.get() {
             return Ok(fitted);
         }
@@ -63,27 +59,34 @@ impl Fits {
         Ok(&self.of(sequence, progress)?.take)
     }
 
-    /// What the cameras saw in the frame of a number, as masks; none of a camera that is lost then.
+    /// What the cameras saw in the frame of a number; nothing of a camera that is lost then.
     pub fn frame_of(&self, sequence: &Sequence<'_>, number: usize) -> Result<TakeFrame> {
-        let mut frame = self.frame(sequence.input, &sequence.pictures(number)?);
+        let mut frame = self.frame(sequence, number, &sequence.pictures(number)?);
         for (view, mask) in frame.masks.iter_mut().enumerate() {
             *mask = mask.take().filter(|_| !sequence.is_lost(view, number));
         }
         Ok(frame)
     }
 
-    /// What the cameras saw, as masks.
-    fn frame(&self, input: Input, pictures: &[DynamicImage]) -> TakeFrame {
+    /// What the cameras saw in the frame of a number, of which these are the pictures.
+    fn frame(
+        &self,
+        sequence: &Sequence<'_>,
+        number: usize,
+        pictures: &[DynamicImage],
+    ) -> TakeFrame {
         let mask = |picture: &DynamicImage| -> Mask {
-            match input {
-                Input::Masks => picture.to_luma8().into(),
-                Input::Photographs => {
+            match sequence.input {
+                Input::Masks | Input::MasksAndLandmarks => picture.to_luma8().into(),
+                Input::Photographs | Input::Landmarks => {
                     let photograph = picture.to_rgb8();
                     AdaptedSkin::new(&self.skin, &photograph).segment(&photograph)
                 }
             }
         };
-        TakeFrame { masks: pictures.iter().map(|picture| Some(mask(picture))).collect() }
+        let mut masks: Vec<Option<Mask>> = pictures.iter().map(mask).map(Some).collect();
+        masks.resize(sequence.views.len(), None);
+        TakeFrame { masks, landmarks: sequence.landmarks_of(number) }
     }
 }
 
@@ -148,9 +151,9 @@ impl Method for FramesAlone<'_> {
             sequence,
             progress,
             || (),
-            |(), pictures| {
+            |(), number, pictures| {
                 let take = take.as_ref().map_err(|error| anyhow!("{error}"))?;
-                let fit = fit_frame(&cameras, &self.0.frame(sequence.input, pictures), take)?;
+                let fit = fit_frame(&cameras, &self.0.frame(sequence, number, pictures), take)?;
                 Ok(of_take(&cameras, take, &fit))
             },
         )

@@ -27,25 +27,5 @@ pub(super) fn border_noise(
         }
         Ok(BoundaryNoise::of(&residuals))
     };
-    (0..fitter.weights.len()).into_par_iter().map(of_view).collect()
-}
-
-/// How much a place of each view's border counts beside one that is known independently to `noise`, px.
-pub(super) fn weights(borders: &[Option<BoundaryNoise>], noise: f64) -> Vec<f64> {
-    let weight = |border: &BoundaryNoise| (noise / border.deviation).powi(2) / border.correlated;
-    borders.iter().map(|border| border.as_ref().map_or(1.0, weight)).collect()
-}
-
-/// Which share of the borders' variance is the same in every frame, over all views.
-pub(super) fn persistent(borders: &[Option<BoundaryNoise>]) -> f64 {
-    let seen: Vec<f64> = borders.iter().flatten().map(|border| border.persistent).collect();
-    seen.iter().sum::<f64>() / seen.len().max(1) as f64
-}
-
-/// The same beside the best view. Poses are fitted with these: the prior of postures is a normal
-/// distribution in place of one with two peaks, straight and folded, and pulls every finger between them
-/// when it counts as much as borders that err together.
-pub(super) fn relative(weights: &[f64]) -> Vec<f64> {
-    let most = weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    weights.iter().map(|weight| weight / most).collect()
+    (0..found.first().map_or(0, |own| own.crops.len())).into_par_iter().map(of_view).collect()
 }

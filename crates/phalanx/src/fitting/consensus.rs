@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::frame_fit::{Found, FrameFitter};
 use super::misfit::DISAGREEMENT;
 use super::observation::{Sight, fitted_hand, length_mm};
+use super::weights::ViewWeights;
 use super::{TakeFrame, starts};
 use crate::{Error, NoProgress, Progress, Result};
 
@@ -33,14 +34,14 @@ pub struct VolumeEstimate {
 /// which side; a mean one will do ([`HandShape::adult`]).
 ///
 /// # Errors
-/// Frames with another number of masks than cameras, or without any hand.
+/// Frames with another number of masks or landmarks than cameras, or without any hand.
 pub fn estimate_volume(
     cameras: &[Camera],
     frames: &[TakeFrame],
     hand: &HandShape,
 ) -> Result<VolumeEstimate> {
     let (hand, prior, refinement) = (fitted_hand(hand), starts::pose_prior()?, refinement());
-    let weights = vec![1.0; cameras.len()];
+    let weights = ViewWeights::unknown(cameras.len());
     let fitter = FrameFitter { hand: &hand, prior: &prior, refinement: &refinement, weights };
     let found = key_frames(cameras, frames, &fitter, &NoProgress)?;
     let middle = agreed(&found, &hand)?;
@@ -77,7 +78,7 @@ pub(super) fn key_frames(
     let chosen = evenly(frames.len(), KEY_FRAMES);
     progress.begin("look for the hand", chosen.len());
     let search = |&k: &usize| {
-        let found = fitter.search(&Sight::of(cameras, &frames[k].masks)?);
+        let found = fitter.search(&Sight::of(cameras, &frames[k])?);
         progress.step();
         found
     };

@@ -3,12 +3,15 @@
 use glam::DAffine3;
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::{
-    Level, PoseFit, PoseFitSettings, PosePrior, Posterior, Screened, SilhouetteObservation,
+    Evidence, LandmarkObservation, Level, PoseFit, PoseFitSettings, PosePrior, Posterior, Screened,
+    SilhouetteObservation,
 };
 
 use super::misfit;
 use super::observation::{self, Sight};
+use super::points::{CameraPoints, palm_frames};
 use super::starts;
+use super::weights::ViewWeights;
 use crate::Result;
 use crate::localize::{BoundingSphere, HandCrop, Placement};
 
@@ -42,8 +45,20 @@ pub(super) struct FrameFitter<'a> {
     pub(super) hand: &'a HandShape,
     pub(super) prior: &'a PosePrior,
     pub(super) refinement: &'a PoseFitSettings,
-    /// How much a place of each view's border counts.
-    pub(super) weights: Vec<f64>,
+    /// How much what each view shows counts.
+    pub(super) weights: ViewWeights,
+}
+
+/// What the views of a frame tell.
+pub(super) struct Seen {
+    pub(super) silhouettes: Vec<SilhouetteObservation>,
+    pub(super) landmarks: Vec<LandmarkObservation>,
+}
+
+impl<'a> From<&'a Seen> for Evidence<'a> {
+    fn from(seen: &'a Seen) -> Self {
+        Self { silhouettes: &seen.silhouettes, landmarks: &seen.landmarks }
+    }
 }
 
 /// A pose found.
@@ -54,7 +69,9 @@ pub(super) struct Found {
     pub(super) refined: PoseFit,
     /// What each view sees.
     pub(super) crops: Vec<Option<HandCrop>>,
-    /// The views that disagree with the others and are left out.
+    /// What a detector saw, camera by camera.
+    pub(super) points: Vec<Option<CameraPoints>>,
+    /// The views that disagree with the others and are left out: the crops, then the points.
     pub(super) left_out: Vec<bool>,
     /// How far the views together are from agreeing with it.
     pub(super) misfit: f64,
@@ -64,6 +81,11 @@ impl Found {
     /// The hand's frame: its origin at the wrist, z along the forearm.
     pub(super) fn frame(&self, hand: &HandShape) -> DAffine3 {
         starts::frame_at(&self.refined.pose, &self.rest, hand)
+    }
+
+    /// Whether a camera's points are left out.
+    pub(super) fn left_out_points(&self, camera: usize) -> bool {
+        self.left_out[self.crops.len() + camera]
     }
 
     /// The pose in another frame of rest.
@@ -83,7 +105,8 @@ struct Screening {
     rest: DAffine3,
     screened: Vec<Screened>,
     crops: Vec<Option<HandCrop>>,
-    evidence: Vec<SilhouetteObservation>,
+    evidence: Seen,
+    views: usize,
     misfit: f64,
 }
 
@@ -105,7 +128,13 @@ impl FrameFitter<'_> {
             let rest = starts::frame_of(placement.wrist, placement.arm);
             Guess { rest, starts: turned.collect() }
         };
-        self.best_of(sight, sight.placements.iter().map(guess))
+        self.best_of(sight, self.by_points(sight).chain(sight.placements.iter().map(guess)))
+    }
+
+    /// Where the points of two cameras say that the hand is.
+    fn by_points(&self, sight: &Sight) -> impl Iterator<Item = Guess> {
+        let at = |rest: DAffine3| Guess { rest, starts: starts::extremes(&Pose::REST).to_vec() };
+        palm_frames(&sight.points, self.hand.side).into_iter().take(GUESSES).map(at)
     }
 
     /// Looks for a hand near where hands of other frames are: `frames` are theirs.
@@ -116,7 +145,8 @@ impl FrameFitter<'_> {
             let moved = |frame: &DAffine3| DAffine3 { translation: placement.wrist, ..*frame };
             turned.chain(frames.iter().map(moved))
         });
-        self.best_of(sight, own.chain(frames.iter().copied()).map(at))
+        let near = own.chain(frames.iter().copied()).map(at);
+        self.best_of(sight, self.by_points(sight).chain(near))
     }
 
     /// The best fit among some guesses.
@@ -132,16 +162,17 @@ impl FrameFitter<'_> {
         screenings.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
         screenings.truncate(GUESSES);
         let mut best: Option<Found> = None;
-        for Screening { rest, screened, crops, evidence, .. } in screenings {
+        for Screening { rest, screened, crops, evidence, views, .. } in screenings {
             let starts = distinct(&screened, STARTS);
             let postures: Vec<Pose> = starts.iter().take(1).flat_map(starts::postures).collect();
             let Some(refined) = self.fit(&rest, &evidence, &[starts, postures].concat())? else {
                 continue;
             };
-            let misfit = self.misfit(&rest, &evidence, &refined.pose, crops.len())?;
+            let misfit = self.misfit(&rest, &evidence, &refined.pose, views)?;
             if best.as_ref().is_none_or(|best| misfit < best.misfit) {
-                let left_out = vec![false; crops.len()];
-                best = Some(Found { rest, refined, crops, left_out, misfit });
+                let points = sight.points.clone();
+                let left_out = vec![false; crops.len() + points.len()];
+                best = Some(Found { rest, refined, crops, points, left_out, misfit });
             }
             // A guess that views agree with needs no other beside it.
             if misfit < 1.0 {
@@ -154,29 +185,31 @@ impl FrameFitter<'_> {
     fn screened(&self, sight: &Sight, guess: Guess) -> Result<Option<Screening>> {
         let Guess { rest, starts } = guess;
         let crops = sight.crops(self.ball(&rest));
-        let evidence = self.evidence(&crops, &vec![false; crops.len()], &rest);
-        if evidence.is_empty() {
+        let left_out = vec![false; crops.len() + sight.points.len()];
+        let evidence = self.seen(&crops, &sight.points, &left_out, &rest);
+        if Evidence::from(&evidence).is_empty() {
             return Ok(None);
         }
+        let views = views_used(&crops, &sight.points, &left_out);
         let screened = self.screen(&rest, &evidence, &starts)?;
         let Some(first) = screened.first() else { return Ok(None) };
-        let misfit = self.misfit(&rest, &evidence, &first.pose, crops.len())?;
-        Ok(Some(Screening { rest, screened, crops, evidence, misfit }))
+        let misfit = self.misfit(&rest, &evidence, &first.pose, views)?;
+        Ok(Some(Screening { rest, screened, crops, evidence, views, misfit }))
     }
 
     /// How far `views` views together are from agreeing with a pose.
-    fn misfit(
-        &self,
-        rest: &DAffine3,
-        evidence: &[SilhouetteObservation],
-        pose: &Pose,
-        views: usize,
-    ) -> Result<f64> {
+    fn misfit(&self, rest: &DAffine3, evidence: &Seen, pose: &Pose, views: usize) -> Result<f64> {
         let of_view = |seen: &SilhouetteObservation| {
             let agreement = self.refinement.agreement(self.hand, rest, seen, pose)?;
             Ok(misfit::of_view(&agreement))
         };
-        let seen: Vec<f64> = evidence.iter().map(of_view).collect::<Result<_>>()?;
+        let of_points = |seen: &LandmarkObservation| {
+            let unexplained = self.refinement.landmark_agreement(self.hand, rest, seen, pose)?;
+            Ok(misfit::of_points(unexplained))
+        };
+        let borders = evidence.silhouettes.iter().map(of_view);
+        let points = evidence.landmarks.iter().map(of_points);
+        let seen: Vec<f64> = borders.chain(points).collect::<Result<_>>()?;
         Ok(misfit::of_views(&seen, views))
     }
 
@@ -186,20 +219,34 @@ impl FrameFitter<'_> {
         observation::ball_of(frame.translation, frame.matrix3.z_axis, length)
     }
 
-    /// What the crops of views that are not left out tell of a hand with its wrist and arm as a frame has
-    /// them.
-    pub(super) fn evidence(
+    /// What the crops and the points of views that are not left out tell of a hand with its wrist and arm as a
+    /// frame has them.
+    pub(super) fn seen(
         &self,
         crops: &[Option<HandCrop>],
+        points: &[Option<CameraPoints>],
         left_out: &[bool],
         frame: &DAffine3,
-    ) -> Vec<SilhouetteObservation> {
-        let views = crops.iter().zip(left_out).zip(&self.weights);
+    ) -> Seen {
+        let (crops_out, points_out) = left_out.split_at(crops.len());
+        let views = crops.iter().zip(crops_out).zip(&self.weights.borders);
         let used = views.filter(|((_, left_out), _)| !**left_out);
-        used.filter_map(|((crop, _), weight)| {
+        let silhouettes = used.filter_map(|((crop, _), weight)| {
             Some(self.evidence_of(crop.as_ref()?, frame)?.weighted(*weight))
-        })
-        .collect()
+        });
+        let cameras = (0..points.len()).filter(|&camera| !points_out[camera]);
+        let landmarks = cameras.filter_map(|camera| self.points_of(points, camera, frame));
+        Seen { silhouettes: silhouettes.collect(), landmarks: landmarks.collect() }
+    }
+
+    /// What the points of a camera tell.
+    pub(super) fn points_of(
+        &self,
+        points: &[Option<CameraPoints>],
+        camera: usize,
+        frame: &DAffine3,
+    ) -> Option<LandmarkObservation> {
+        points[camera].as_ref()?.observation(&self.weights.points[camera], frame)
     }
 
     /// What a crop tells; `None` of one without a border.
@@ -227,10 +274,10 @@ impl FrameFitter<'_> {
     pub(super) fn posterior(&self, found: &Found, hand_std: &[f64]) -> Result<Option<Posterior>> {
         // About the hand's own frame, where no angle is near the edge of its range.
         let frame = found.frame(self.hand);
-        let evidence = self.evidence(&found.crops, &found.left_out, &frame);
+        let evidence = &self.seen(&found.crops, &found.points, &found.left_out, &frame);
         let own = found.pose_in(&frame, self.hand);
         let posterior =
-            self.refinement.posterior(self.hand, &frame, &evidence, &own, self.prior, hand_std);
+            self.refinement.posterior(self.hand, &frame, evidence, &own, self.prior, hand_std);
         match posterior {
             Ok(posterior) => Ok(Some(posterior)),
             Err(phalanx_refine::Error::Precision { .. } | phalanx_refine::Error::NoObservation) => {
@@ -250,8 +297,8 @@ impl FrameFitter<'_> {
         postures: Postures,
     ) -> Result<Option<Found>> {
         let rest = found.frame(self.hand);
-        let evidence = self.evidence(&found.crops, left_out, &rest);
-        if evidence.is_empty() {
+        let evidence = self.seen(&found.crops, &found.points, left_out, &rest);
+        if Evidence::from(&evidence).is_empty() {
             return Ok(None);
         }
         let own = found.pose_in(&rest, self.hand);
@@ -261,19 +308,13 @@ impl FrameFitter<'_> {
             starts.extend(starts::postures(&own));
         }
         let Some(refined) = self.fit(&rest, &evidence, &starts)? else { return Ok(None) };
-        let used = left_out.iter().filter(|left_out| !**left_out).count();
+        let used = views_used(&found.crops, &found.points, left_out);
         let misfit = self.misfit(&rest, &evidence, &refined.pose, used)?;
-        let (crops, left_out) = (found.crops.clone(), left_out.to_vec());
-        Ok(Some(Found { rest, refined, crops, left_out, misfit }))
+        Ok(Some(Found { rest, refined, left_out: left_out.to_vec(), misfit, ..found.clone() }))
     }
 
     /// The best fit from some starts, all of which are screened and the best few fitted fully.
-    fn fit(
-        &self,
-        rest: &DAffine3,
-        evidence: &[SilhouetteObservation],
-        starts: &[Pose],
-    ) -> Result<Option<PoseFit>> {
+    fn fit(&self, rest: &DAffine3, evidence: &Seen, starts: &[Pose]) -> Result<Option<PoseFit>> {
         let glanced = self.screen_at(GLANCE, rest, evidence, starts)?;
         let screened = self.screen(rest, evidence, &distinct(&glanced, SCREENED))?;
         let mut best: Option<PoseFit> = None;
@@ -295,7 +336,7 @@ impl FrameFitter<'_> {
     pub(super) fn screen(
         &self,
         rest: &DAffine3,
-        evidence: &[SilhouetteObservation],
+        evidence: &Seen,
         starts: &[Pose],
     ) -> Result<Vec<Screened>> {
         self.screen_at(COARSE, rest, evidence, starts)
@@ -306,7 +347,7 @@ impl FrameFitter<'_> {
         &self,
         level: Level,
         rest: &DAffine3,
-        evidence: &[SilhouetteObservation],
+        evidence: &Seen,
         starts: &[Pose],
     ) -> Result<Vec<Screened>> {
         let mut screened =
@@ -314,6 +355,22 @@ impl FrameFitter<'_> {
         screened.sort_by(|a, b| a.energy.total_cmp(&b.energy));
         Ok(screened)
     }
+}
+
+/// How many views that are not left out should show the hand: all masks that there are, if any shows it, and
+/// all points.
+pub(super) fn views_used(
+    crops: &[Option<HandCrop>],
+    points: &[Option<CameraPoints>],
+    left_out: &[bool],
+) -> usize {
+    let (crops_out, points_out) = left_out.split_at(crops.len());
+    let points = points.iter().zip(points_out);
+    let with_points = points.filter(|(points, left_out)| points.is_some() && !**left_out).count();
+    if with_points > 0 && crops.iter().all(Option::is_none) {
+        return with_points;
+    }
+    crops_out.iter().filter(|left_out| !**left_out).count() + with_points
 }
 
 /// Which postures of the fingers a fit starts from.

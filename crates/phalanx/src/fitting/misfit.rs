@@ -31,10 +31,16 @@ pub(super) fn of_views(seen: &[f64], views: usize) -> f64 {
     (of_seen + of_others) / views.max(1) as f64
 }
 
+/// How far a view's landmarks are from agreeing with a pose, by how much of them is unexplained.
+pub(super) fn of_points(unexplained: f64) -> f64 {
+    unexplained / CONTRADICTION
+}
+
 /// How far each view of a fit is from agreeing with it.
 fn each(fit: &PoseFit) -> impl Iterator<Item = f64> {
     let views = fit.ious.iter().zip(&fit.unexplained);
-    views.map(|(&iou, &unexplained)| of_view(&Agreement { iou, unexplained }))
+    let borders = views.map(|(&iou, &unexplained)| of_view(&Agreement { iou, unexplained }));
+    borders.chain(fit.landmarks_unexplained.iter().copied().map(of_points))
 }
 
 /// How far `views` views together are from agreeing with a fit to those that show any of the hand.

@@ -12,14 +12,16 @@ mod misfit;
 mod motion;
 mod observation;
 mod passes;
+mod points;
 mod proportions;
 mod report;
 mod starts;
 mod take;
 mod tracking;
 mod views;
+mod weights;
 
 pub use consensus::{VolumeEstimate, estimate_volume};
-pub use report::{FitDoubt, FrameFit, Missing, ViewFit};
+pub use report::{FitDoubt, FrameFit, LandmarkFit, Missing, ViewFit};
 pub use take::{Proportions, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take};
 pub use tracking::{Delay, TrackSettings, TrackedFrame, Tracker, TrackerState};

@@ -5,6 +5,9 @@ use phalanx_camera::Camera;
 use phalanx_hand::{HandShape, Pose};
 use phalanx_segmentation::{HandDetection, HandDetector, Mask};
 
+use super::points::CameraPoints;
+use super::take::TakeFrame;
+
 use crate::localize::{Arm, BoundingSphere, Detections, HandCrop, Placement, associate};
 use crate::{Error, Result};
 
@@ -55,6 +58,8 @@ pub(super) struct Sight {
     views: Vec<View>,
     detections: Vec<Detections>,
     pub(super) placements: Vec<Placement>,
+    /// What a detector saw, camera by camera.
+    pub(super) points: Vec<Option<CameraPoints>>,
 }
 
 /// One camera's part of a frame.
@@ -67,8 +72,9 @@ impl Sight {
     /// Looks for hands in the masks of a frame, one for each camera, of any size.
     ///
     /// # Errors
-    /// Another number of masks than cameras.
-    pub(super) fn of(cameras: &[Camera], masks: &[Option<Mask>]) -> Result<Self> {
+    /// Another number of masks or landmarks than cameras.
+    pub(super) fn of(cameras: &[Camera], frame: &TakeFrame) -> Result<Self> {
+        let TakeFrame { masks, landmarks } = frame;
         if masks.len() != cameras.len() {
             let cameras = cameras.iter().map(|camera| camera.name.clone()).collect();
             return Err(Error::PictureCount { cameras, found: masks.len() });
@@ -84,7 +90,8 @@ impl Sight {
             detections.push(found);
         }
         let placements = associate(&detections, PLACEMENTS);
-        Ok(Self { views, detections, placements })
+        let points = CameraPoints::of(cameras, landmarks)?;
+        Ok(Self { views, detections, placements, points })
     }
 
     /// What each view sees of a ball in space; `None` of a view without anything like a hand, or for

@@ -23,7 +23,7 @@ pub(super) fn first(
 ) -> Result<Vec<Option<Found>>> {
     progress.begin("fit each frame", frames.len());
     let search = |frame: &TakeFrame| {
-        let found = fitter.search_near(&Sight::of(cameras, &frame.masks)?, near);
+        let found = fitter.search_near(&Sight::of(cameras, frame)?, near);
         progress.step();
         found
     };
@@ -103,7 +103,7 @@ pub(super) fn recovered(
             return Ok(found[k].clone());
         }
         let places: Vec<_> = near.iter().map(|(_, near)| near.frame(fitter.hand)).collect();
-        let other = fitter.search_near(&Sight::of(cameras, &frames[k].masks)?, &places)?;
+        let other = fitter.search_near(&Sight::of(cameras, &frames[k])?, &places)?;
         let near: Vec<&Found> = near.iter().map(|(_, found)| *found).collect();
         let other = match &other {
             Some(other) => fitter.again(other, &other.left_out, &near, Postures::All)?,

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::consensus::evenly;
-use super::frame_fit::{Found, FrameFitter};
+use super::frame_fit::{Found, FrameFitter, Seen};
 use super::views;
 use crate::Result;
 
@@ -60,14 +60,10 @@ pub(super) fn learn(
     let found: Vec<&Found> = found.iter().flatten().collect();
     let frame = |found: &Found| {
         let frame = found.frame(fitter.hand);
-        let evidence = fitter.evidence(&found.crops, &found.left_out, &frame);
+        let evidence = fitter.seen(&found.crops, &found.points, &found.left_out, &frame);
         let start = found.pose_in(rest, fitter.hand);
-        BundleFrame {
-            observations: evidence,
-            landmarks: Vec::new(),
-            start,
-            prior: fitter.prior.clone(),
-        }
+        let Seen { silhouettes: observations, landmarks } = evidence;
+        BundleFrame { observations, landmarks, start, prior: fitter.prior.clone() }
     };
     let is_right = |found: &&Found| views::is_right(fitter, found);
     let right: Vec<bool> = found.par_iter().map(is_right).collect::<Result<_>>()?;
@@ -75,7 +71,7 @@ pub(super) fn learn(
         found.into_iter().zip(right).filter(|(_, right)| *right).map(|(found, _)| found).collect();
     let chosen = evenly(found.len(), 2 * LEARNT_FROM);
     let frames = chosen.iter().map(|&k| frame(found[k]));
-    let frames = frames.filter(|frame| !frame.observations.is_empty());
+    let frames = frames.filter(|frame| !frame.evidence().is_empty());
     let (seen, held) = alternating(frames);
     if held.is_empty() {
         return Ok(None);

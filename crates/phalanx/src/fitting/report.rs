@@ -41,6 +41,17 @@ pub struct ViewFit {
     /// Intersection over union of the drawn and the observed silhouette, of what is known; `None` where
     /// nothing was observed.
     pub overlap: Option<f64>,
+    /// What became of the camera's landmarks; `None` of a camera without any.
+    pub landmarks: Option<LandmarkFit>,
+}
+
+/// What became of the landmarks of one camera of a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LandmarkFit {
+    /// Whether they were used; not where they contradict the other views.
+    pub is_used: bool,
+    /// Median distance of the joints, projected by the camera, from their points, px.
+    pub distance_px: f64,
 }
 
 /// Why a view was not used.
@@ -69,6 +80,13 @@ pub enum FitDoubt {
         unexplained: f64,
         /// Intersection over union of the drawn and the observed silhouette.
         overlap: f64,
+    },
+    /// The landmarks of a camera that were used are of something else than the pose.
+    PoorLandmarks {
+        /// The camera's number.
+        view: usize,
+        /// How much of them the pose leaves unexplained, 0 to 1.
+        unexplained: f64,
     },
     /// Part of the hand is beyond the border of a view's picture, or the pose points another way than the
     /// hand that leaves the picture there; and no two views show all of it.
@@ -99,20 +117,22 @@ impl Reporter<'_> {
             Posterior { std: [f64::INFINITY; Dof::COUNT], joints: [f64::INFINITY; JOINTS] }
         });
         let agreements = views::agreements(fitter, found)?;
-        let views = agreements.iter().zip(&found.left_out).map(|(agreement, &left_out)| ViewFit {
-            missing: match (agreement, left_out) {
-                (None, _) => Some(Missing::NoHand),
-                (_, true) => Some(Missing::Disagrees),
-                _ => None,
-            },
-            overlap: agreement.map(|agreement| agreement.iou),
-        });
-        let views: Vec<ViewFit> = views.collect();
+        let views: Vec<ViewFit> =
+            (0..agreements.len()).map(|view| self.view(found, view, agreements[view])).collect();
         for view in used(&views) {
-            let Some(agreement) = agreements[view] else { continue };
+            let Some(agreement) = agreements[view].filter(|_| !found.left_out[view]) else {
+                continue;
+            };
             if misfit::of_view(&agreement) > 1.0 {
                 let Agreement { iou: overlap, unexplained } = agreement;
                 doubts.push(FitDoubt::PoorFit { view, unexplained, overlap });
+            }
+        }
+        for (view, unexplained) in views::points_unexplained(fitter, found)?.into_iter().enumerate()
+        {
+            let used = unexplained.filter(|_| !found.left_out_points(view));
+            if let Some(unexplained) = used.filter(|used| misfit::of_points(*used) > 1.0) {
+                doubts.push(FitDoubt::PoorLandmarks { view, unexplained });
             }
         }
         doubts.extend(self.cut_off(found, &views, &joints));
@@ -126,6 +146,30 @@ impl Reporter<'_> {
             doubts,
             converged: found.refined.converged,
         })
+    }
+
+    /// What became of a view, whose mask agrees so well with the pose.
+    fn view(&self, found: &Found, view: usize, agreement: Option<Agreement>) -> ViewFit {
+        let landmarks = self.landmarks(found, view);
+        let is_used = agreement.is_some() && !found.left_out[view]
+            || landmarks.is_some_and(|landmarks| landmarks.is_used);
+        let missing = match (agreement, landmarks) {
+            _ if is_used => None,
+            (None, None) => Some(Missing::NoHand),
+            _ => Some(Missing::Disagrees),
+        };
+        ViewFit { missing, overlap: agreement.map(|agreement| agreement.iou), landmarks }
+    }
+
+    /// What became of a camera's landmarks.
+    fn landmarks(&self, found: &Found, view: usize) -> Option<LandmarkFit> {
+        let (fitter, hand) = (self.fitter, self.fitter.hand);
+        let seen = fitter.points_of(&found.points, view, &found.frame(hand))?;
+        let residuals = seen.residuals(hand, &found.rest, &found.refined.pose);
+        let mut distances: Vec<f64> = residuals.iter().flatten().map(|px| px.length()).collect();
+        distances.sort_by(f64::total_cmp);
+        let distance_px = *distances.get(distances.len() / 2)?;
+        Some(LandmarkFit { is_used: !found.left_out_points(view), distance_px })
     }
 
     /// The views whose pictures lack part of the hand, where no two views that are used show all of it.
@@ -181,7 +225,7 @@ fn used(views: &[ViewFit]) -> impl Iterator<Item = usize> {
 }
 
 /// A view that shows no hand.
-const NOTHING: ViewFit = ViewFit { missing: Some(Missing::NoHand), overlap: None };
+const NOTHING: ViewFit = ViewFit { missing: Some(Missing::NoHand), overlap: None, landmarks: None };
 
 /// Whether a camera's picture shows points of the world.
 trait SeesAll {

@@ -2,13 +2,12 @@
 
 use glam::DAffine3;
 use phalanx_camera::{Camera, Volume};
-use phalanx_hand::HandShape;
+use phalanx_hand::{HandShape, Landmarks};
 use phalanx_refine::{PoseFitSettings, PosePrior};
 use phalanx_segmentation::Mask;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::borders;
 use super::consensus::{self, VolumeEstimate};
 use super::frame_fit::{Found, FrameFitter, Postures};
 use super::observation::{Sight, fitted_hand};
@@ -17,14 +16,30 @@ use super::proportions::{self, HandEvidence, KnownHand};
 use super::report::{FrameFit, Reporter};
 use super::starts;
 use super::views;
+use super::weights::{ViewKnowledge, ViewWeights};
 use crate::{Error, Progress, Result};
 
-/// What each camera saw at one time: masks in which hand is over 127, each a scaled copy of its camera's
-/// image; `None` of a camera that has none.
+/// What each camera saw at one time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TakeFrame {
-    /// One for each camera.
+    /// One for each camera: a mask in which hand is over 127, a scaled copy of the camera's image; `None` of
+    /// a camera that has none.
     pub masks: Vec<Option<Mask>>,
+    /// What a detector saw of the hand, if there is one: for each camera the points in the pixels of its
+    /// image; `None` of a camera whose picture they lack in. Empty without a detector.
+    pub landmarks: Vec<Option<Landmarks>>,
+}
+
+impl TakeFrame {
+    /// Masks alone, one for each camera.
+    pub fn of_masks(masks: Vec<Option<Mask>>) -> Self {
+        Self { masks, landmarks: Vec::new() }
+    }
+
+    /// Landmarks alone, one for each camera.
+    pub fn of_landmarks(landmarks: Vec<Option<Landmarks>>) -> Self {
+        Self { masks: vec![None; landmarks.len()], landmarks }
+    }
 }
 
 /// How takes are fitted.
@@ -68,14 +83,14 @@ pub struct TakeFit {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Known {
     pub(super) hand: KnownHand,
-    /// How much each view's border counts.
-    pub(super) weights: Vec<f64>,
+    /// How much what each view shows counts.
+    pub(super) weights: ViewWeights,
 }
 
 impl Known {
     /// Of a hand and of views of which nothing is known.
     pub(super) fn nothing(hand: &HandShape, views: usize) -> Self {
-        Self { hand: KnownHand::anyone(hand), weights: vec![1.0; views] }
+        Self { hand: KnownHand::anyone(hand), weights: ViewWeights::unknown(views) }
     }
 }
 
@@ -89,7 +104,8 @@ const ROUNDS: usize = 2;
 /// number of threads.
 ///
 /// # Errors
-/// Frames with another number of masks than cameras, or no frame in which any camera sees a hand.
+/// Frames with another number of masks or landmarks than cameras, or no frame in which any camera sees a
+/// hand: landmarks alone need two cameras.
 pub fn fit_take(
     cameras: &[Camera],
     frames: &[TakeFrame],
@@ -136,7 +152,7 @@ pub fn fit_take(
 /// Fits one frame of a hand that a take was fitted to, before the same cameras.
 ///
 /// # Errors
-/// Another number of masks than cameras, or no camera that sees a hand.
+/// Another number of masks or landmarks than cameras, or no camera that sees a hand.
 pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Result<FrameFit> {
     let (prior, refinement) = (starts::pose_prior()?, consensus::refinement());
     let Known { hand, weights } = &take.known;
@@ -146,9 +162,9 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
         refinement: &refinement,
         weights,
     };
-    let relative = fitter(borders::relative(weights));
+    let relative = fitter(weights.relative());
     let rest = take.volume.volume.rest_frame();
-    let sight = Sight::of(cameras, &frame.masks)?;
+    let sight = Sight::of(cameras, frame)?;
     let found = relative.search_near(&sight, &[rest])?.ok_or(Error::NoHand)?;
     let again = relative.again(&found, &found.left_out, &[], Postures::All)?;
     let found = views::without_disagreeing(&relative, &again.unwrap_or(found))?;
@@ -163,8 +179,8 @@ struct Take<'a> {
     refinement: &'a PoseFitSettings,
     mean: HandShape,
     hand: KnownHand,
-    weights: Vec<f64>,
-    /// Which share of the borders' variance is the same in every frame.
+    weights: ViewWeights,
+    /// Which share of the variance of what views show is the same in every frame.
     persistent: f64,
 }
 
@@ -186,31 +202,29 @@ impl<'a> Take<'a> {
     ) -> Self {
         let mean = fitted_hand(hand);
         let hand = KnownHand::anyone(&mean);
-        let weights = vec![1.0; cameras.len()];
+        let weights = ViewWeights::unknown(cameras.len());
         Self { cameras, prior, refinement, mean, hand, weights, persistent: 0.0 }
     }
 
     fn fitter(&self, weights: Weights) -> FrameFitter<'_> {
         let weights = match weights {
             Weights::Absolute => self.weights.clone(),
-            Weights::Relative => borders::relative(&self.weights),
+            Weights::Relative => self.weights.relative(),
         };
         let Self { prior, refinement, hand, .. } = self;
         FrameFitter { hand: &hand.shape, prior, refinement, weights }
     }
 
-    /// Finds out how well borders are known.
+    /// Finds out how well borders and points are known.
     fn weigh(&mut self, found: &[Option<Found>]) -> Result<()> {
-        let borders = borders::border_noise(&self.fitter(Weights::Absolute), found)?;
-        self.weights = borders::weights(&borders, self.refinement.noise);
-        self.persistent = borders::persistent(&borders);
+        let known = ViewKnowledge::of(&self.fitter(Weights::Absolute), found)?;
+        (self.weights, self.persistent) = (known.weights, known.persistent);
         Ok(())
     }
 
     /// What borders tell of the hand's proportions.
     fn border(&self) -> HandEvidence {
-        let independent = self.weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        HandEvidence { independent, persistent: self.persistent }
+        HandEvidence { independent: self.weights.most(), persistent: self.persistent }
     }
 
     /// The report of every frame.

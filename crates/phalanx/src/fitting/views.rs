@@ -58,15 +58,33 @@ pub(super) fn is_right(fitter: &FrameFitter<'_>, found: &Found) -> Result<bool> 
     let is_right = |view: usize| {
         found.left_out[view]
             || contradictions[view].is_none_or(|far| far <= 1.0)
-                && !fitter.leaves_picture(found, view)
+                && !(view < found.crops.len() && fitter.leaves_picture(found, view))
     };
     Ok((0..contradictions.len()).all(is_right))
 }
 
-/// How far each view of a frame is from agreeing with its fit.
+/// How far each view of a frame is from agreeing with its fit: its masks', then its landmarks'.
 fn contradictions(fitter: &FrameFitter<'_>, found: &Found) -> Result<Vec<Option<f64>>> {
-    let agreements = agreements(fitter, found)?;
-    Ok(agreements.iter().map(|found| Some(misfit::of_view(found.as_ref()?))).collect())
+    let masks = agreements(fitter, found)?;
+    let masks = masks.iter().map(|found| Some(misfit::of_view(found.as_ref()?)));
+    let points = points_unexplained(fitter, found)?;
+    let points = points.iter().map(|unexplained| unexplained.map(misfit::of_points));
+    Ok(masks.chain(points).collect())
+}
+
+/// How much of each view's landmarks a fit leaves unexplained, also of those that are left out.
+pub(super) fn points_unexplained(
+    fitter: &FrameFitter<'_>,
+    found: &Found,
+) -> Result<Vec<Option<f64>>> {
+    let frame = found.frame(fitter.hand);
+    let of_view = |camera: usize| {
+        let seen = fitter.points_of(&found.points, camera, &frame)?;
+        let Found { rest, refined, .. } = found;
+        Some(fitter.refinement.landmark_agreement(fitter.hand, rest, &seen, &refined.pose))
+    };
+    let unexplained = (0..found.points.len()).map(|camera| of_view(camera).transpose());
+    Ok(unexplained.collect::<phalanx_refine::Result<_>>()?)
 }
 
 /// The frame fitted without one view more, and how far the others are then from agreeing; `None` if the

@@ -5,8 +5,11 @@ use phalanx_hand::{HandShape, Pose};
 
 use crate::error::Result;
 use crate::geometry::correspondence::ViewMatcher;
+use crate::observation::landmarks::LandmarkObservation;
 use crate::observation::silhouette::SilhouetteObservation;
 use crate::pose_fit::settings::PoseFitSettings;
+use crate::solver::jacobian::Place;
+use crate::solver::landmark_residuals::LandmarkResiduals;
 
 /// How well what one camera saw agrees with a posed hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,5 +46,23 @@ impl PoseFitSettings {
             iou: evidence.iou(view.drawn()),
             unexplained: loss.unexplained(energy, distances.len()),
         })
+    }
+
+    /// Compares one camera's landmarks with a hand in a pose, at the finest level: how much of them the pose
+    /// leaves unexplained, 0 to 1.
+    ///
+    /// # Errors
+    /// A parameter out of its range.
+    pub fn landmark_agreement(
+        &self,
+        hand: &HandShape,
+        rest: &DAffine3,
+        evidence: &LandmarkObservation,
+        pose: &Pose,
+    ) -> Result<f64> {
+        self.check()?;
+        let posed = hand.pose(pose, rest);
+        let place = Place::new(evidence.camera(), None, rest.translation);
+        Ok(LandmarkResiduals::new(evidence, place, &posed, self.finest()).unexplained)
     }
 }

@@ -6,7 +6,7 @@ use phalanx_hand::JOINTS;
 /// How well the points of one camera are known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LandmarkNoise {
-    /// Standard deviation of a point along each axis, px, robustly.
+    /// Standard deviation of a point along each axis, in the residuals' unit, robustly.
     pub deviation: f64,
     /// How many points of a frame, on average, tell no more than one does that errs independently.
     pub correlated: f64,
@@ -101,7 +101,7 @@ mod tests {
             let frame = |f: usize| {
                 std::array::from_fn(|j| {
                     let together = share * of_frames[f] + (1.0 - share) * (of_joints[j] - mean);
-                    let outlier = if (f + 7 * j) % 29 == 0 { 90.0 } else { 0.0 };
+                    let outlier = if (f + 7 * j).is_multiple_of(29) { 90.0 } else { 0.0 };
                     (f + j != 11).then(|| 3.0 * (alone[f * JOINTS + j] + together) + outlier)
                 })
             };

@@ -2,14 +2,14 @@
 
 use glam::DAffine3;
 use phalanx_hand::Pose;
-use phalanx_refine::{Level, PoseFit, PoseFitSettings, SilhouetteObservation};
+use phalanx_refine::{Evidence, Level, PoseFit, PoseFitSettings};
 
 use super::motion::{Motion, NUMBERS};
 use super::noise::MotionNoise;
 use super::seen::Seen;
 use crate::Result;
-use crate::fitting::frame_fit::{Found, FrameFitter};
-use crate::fitting::{consensus, misfit, starts};
+use crate::fitting::frame_fit::{Found, FrameFitter, views_used};
+use crate::fitting::{consensus, frame_fit, misfit, starts};
 
 /// A frame fitted near where its hand was predicted.
 pub(super) struct Followed {
@@ -47,7 +47,7 @@ const BETTER: f64 = 0.95;
 struct Frame<'a> {
     fitter: &'a FrameFitter<'a>,
     rest: DAffine3,
-    evidence: Vec<SilhouetteObservation>,
+    evidence: frame_fit::Seen,
     views: usize,
     predicted: &'a Motion,
     noise: &'a MotionNoise,
@@ -73,12 +73,14 @@ pub(super) fn follow(
 ) -> Result<Option<Followed>> {
     let (hand, rest) = (fitter.hand, predicted.rest);
     let crops = seen.crops(fitter.ball(&rest));
-    let left_out = vec![false; crops.len()];
-    let evidence = fitter.evidence(&crops, &left_out, &rest);
-    if evidence.is_empty() {
+    let points = seen.points.clone();
+    let left_out = vec![false; crops.len() + points.len()];
+    let evidence = fitter.seen(&crops, &points, &left_out, &rest);
+    if Evidence::from(&evidence).is_empty() {
         return Ok(None);
     }
-    let frame = Frame { fitter, rest, evidence, views: crops.len(), predicted, noise };
+    let views = views_used(&crops, &points, &left_out);
+    let frame = Frame { fitter, rest, evidence, views, predicted, noise };
     let still = starts::in_frame(&last.pose, &last.rest, &rest, hand);
     let Some(mut best) = frame.fitted(&[predicted.pose, still])? else { return Ok(None) };
     if best.misfit > enough
@@ -92,7 +94,7 @@ pub(super) fn follow(
     let motion = predicted.corrected(&refined.pose, &covariance, &inflated, hand);
     let (offset, before) = (offset(&refined.pose, predicted), predicted.variances());
     let after = std::array::from_fn(|k| covariance[k * NUMBERS + k]);
-    let found = Found { rest, refined, crops, left_out, misfit };
+    let found = Found { rest, refined, crops, points, left_out, misfit };
     Ok(Some(Followed { found, motion, offset, before, after }))
 }
 

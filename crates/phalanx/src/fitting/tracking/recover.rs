@@ -25,7 +25,7 @@ pub(super) fn recover(
     if best.as_ref().is_some_and(|best| misfit::agrees(&best.refined)) {
         return Ok(best);
     }
-    let sight = Sight::of(cameras, &frame.masks)?;
+    let sight = Sight::of(cameras, frame)?;
     let found =
         if near.is_empty() { fitter.search(&sight)? } else { fitter.search_near(&sight, near)? };
     if let Some(found) = found {

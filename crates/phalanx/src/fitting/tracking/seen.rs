@@ -3,13 +3,17 @@
 use phalanx_camera::Camera;
 use phalanx_segmentation::{Cleanup, HandDetector, Mask};
 
+use crate::fitting::TakeFrame;
 use crate::fitting::observation::crop_of;
+use crate::fitting::points::CameraPoints;
 use crate::localize::{BoundingSphere, HandCrop};
 use crate::{Error, Result};
 
 /// The components of a frame's masks that are as large as a hand.
 pub(super) struct Seen {
     views: Vec<View>,
+    /// What a detector saw, camera by camera.
+    pub(super) points: Vec<Option<CameraPoints>>,
 }
 
 struct View {
@@ -22,12 +26,13 @@ impl Seen {
     /// In the masks of a frame, one for each camera, of any size.
     ///
     /// # Errors
-    /// Another number of masks than cameras.
+    /// Another number of masks or landmarks than cameras.
     pub(super) fn of(
         cameras: &[Camera],
-        masks: &[Option<Mask>],
+        frame: &TakeFrame,
         finder: &mut HandDetector,
     ) -> Result<Self> {
+        let TakeFrame { masks, landmarks } = frame;
         if masks.len() != cameras.len() {
             let cameras = cameras.iter().map(|camera| camera.name.clone()).collect();
             return Err(Error::PictureCount { cameras, found: masks.len() });
@@ -44,12 +49,14 @@ impl Seen {
                 components,
             }
         };
-        Ok(Self { views: cameras.iter().zip(masks).map(&mut view).collect() })
+        let points = CameraPoints::of(cameras, landmarks)?;
+        Ok(Self { views: cameras.iter().zip(masks).map(&mut view).collect(), points })
     }
 
-    /// Whether no view has anything as large as a hand.
+    /// Whether no view has anything as large as a hand, nor points of one.
     pub(super) fn is_empty(&self) -> bool {
-        self.views.iter().all(|view| view.components.is_empty())
+        let no_hand = self.views.iter().all(|view| view.components.is_empty());
+        no_hand && self.points.iter().all(Option::is_none)
     }
 
     /// What each view sees of a ball in space; `None` of a view without anything like a hand there.

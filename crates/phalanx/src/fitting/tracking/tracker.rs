@@ -22,7 +22,8 @@ use crate::fitting::observation::fitted_hand;
 use crate::fitting::proportions::HandEvidence;
 use crate::fitting::report::{FrameFit, Reporter};
 use crate::fitting::take::{Known, Proportions, TakeFit, TakeFrame};
-use crate::fitting::{borders, consensus, misfit, starts, views};
+use crate::fitting::weights::ViewKnowledge;
+use crate::fitting::{consensus, misfit, starts, views};
 use crate::{Error, Result};
 
 /// How a hand is tracked.
@@ -117,7 +118,7 @@ impl Tracker {
         rest: Option<DAffine3>,
         delay: Delay,
     ) -> Result<Self> {
-        let unit = known.weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let unit = known.weights.most();
         Ok(Self {
             cameras: cameras.to_vec(),
             postures: starts::pose_prior()?,
@@ -176,7 +177,7 @@ impl Tracker {
     /// one or, a frame late, the one before.
     ///
     /// # Errors
-    /// A time that is not after the last one, or another number of masks than cameras.
+    /// A time that is not after the last one, or another number of masks or landmarks than cameras.
     pub fn push(&mut self, time: f64, frame: &TakeFrame) -> Result<Option<TrackedFrame>> {
         if let Some(last) = &self.last
             && time.partial_cmp(&last.time) != Some(Ordering::Greater)
@@ -215,7 +216,7 @@ impl Tracker {
 
     /// How frames are fitted with what is known of the hand and of the borders.
     fn fitter<'a>(&'a self, refinement: &'a PoseFitSettings) -> FrameFitter<'a> {
-        let weights = borders::relative(&self.known.weights);
+        let weights = self.known.weights.relative();
         FrameFitter { hand: self.hand(), prior: &self.postures, refinement, weights }
     }
 
@@ -240,7 +241,7 @@ impl Tracker {
         last: &Last,
         prediction: &Prediction,
     ) -> Result<Last> {
-        let seen = Seen::of(&self.cameras, &frame.masks, &mut self.finder)?;
+        let seen = Seen::of(&self.cameras, frame, &mut self.finder)?;
         let predicted = &prediction.motion;
         let before = last.motion.as_ref().unwrap_or(predicted);
         let fitter = self.fitter(&self.following);
@@ -287,10 +288,9 @@ impl Tracker {
         let believing = consensus::believing();
         let absolute =
             FrameFitter { weights: self.known.weights.clone(), ..self.fitter(&believing) };
-        let noise = borders::border_noise(&absolute, own_hand.kept())?;
-        self.known.weights = borders::weights(&noise, self.searching.noise);
-        let independent = self.known.weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let border = HandEvidence { independent, persistent: borders::persistent(&noise) };
+        let ViewKnowledge { weights, persistent } = ViewKnowledge::of(&absolute, own_hand.kept())?;
+        let border = HandEvidence { independent: weights.most(), persistent };
+        self.known.weights = weights;
         let learnt = own_hand.learn(&self.fitter(&believing), &rest, border)?;
         if let Some(learnt) = learnt {
             self.known.hand = learnt;

@@ -1,0 +1,66 @@
+//! Drawn takes, of which it is known where every joint is.
+
+use glam::{DAffine3, DVec3};
+use phalanx::{ItemRng, TakeFrame};
+use phalanx_camera::{Camera, Intrinsics, Rig};
+use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
+use phalanx_render::Renderer;
+
+/// A drawn take: cameras on three sides of a desk, and a hand that is no mean one.
+pub(crate) struct Drawn {
+    pub(crate) cameras: Vec<Camera>,
+    pub(crate) frames: Vec<TakeFrame>,
+    pub(crate) joints: Vec<[DVec3; JOINTS]>,
+}
+
+/// The desk's cameras, with pictures that a hand is small in.
+pub(crate) fn cameras() -> Vec<Camera> {
+    let rig = Rig::from_toml(include_str!("../../fixtures/desk.toml")).expect("a rig");
+    let wide = |camera: &Camera| {
+        let Intrinsics { fx, .. } = camera.intrinsics;
+        camera.with_intrinsics(Intrinsics::pinhole(320, 240, 1.6 * fx))
+    };
+    rig.cameras.iter().map(wide).collect()
+}
+
+/// Someone's hand: 6 % longer than the mean one, its bones up to 4 % more or less.
+pub(crate) fn hand() -> HandShape {
+    let mut random = ItemRng::new(5, 0);
+    HandShape::adult().scaled(|| 1.06 * random.between(0.96, 1.04))
+}
+
+/// Fingers that open and close in turn while the hand turns a little.
+fn pose(frame: usize) -> Pose {
+    let mut pose = Pose::REST;
+    let at = frame as f64;
+    for (k, finger) in Digit::FINGERS.into_iter().enumerate() {
+        let bent = 0.5 - 0.5 * (0.8 * at + 1.5 * k as f64).cos();
+        let angles = [0.0, 0.9 * bent, 1.3 * bent, 0.8 * bent];
+        finger.dofs().into_iter().zip(angles).for_each(|(dof, angle)| pose[dof] = angle);
+    }
+    pose[Dof::ThetaX] = 0.15 * (0.5 * at).sin();
+    pose[Dof::ThetaZ] = 0.6 + 0.3 * (0.4 * at).cos();
+    [pose[Dof::TX], pose[Dof::TY], pose[Dof::TZ]] = [4.0 * at, 3.0 * (0.7 * at).sin(), -10.0];
+    pose
+}
+
+pub(crate) fn drawn(count: usize) -> Drawn {
+    let (cameras, hand, rest) = (cameras(), hand(), DAffine3::IDENTITY);
+    let mut renderers: Vec<Renderer> =
+        cameras.iter().map(|camera| Renderer::new(camera).expect("a camera")).collect();
+    let (mut frames, mut joints) = (Vec::new(), Vec::new());
+    for frame in 0..count {
+        let posed = hand.pose(&pose(frame), &rest);
+        let mut mask = |renderer: &mut Renderer| {
+            let drawn = renderer.silhouette(&posed.primitives);
+            Some(drawn.expect("a hand before the camera").into())
+        };
+        frames.push(TakeFrame::of_masks(renderers.iter_mut().map(&mut mask).collect()));
+        joints.push(posed.joints);
+    }
+    Drawn { cameras, frames, joints }
+}
+
+pub(crate) fn mean_error(found: &[DVec3; JOINTS], truth: &[DVec3; JOINTS]) -> f64 {
+    found.iter().zip(truth).map(|(a, b)| a.distance(*b)).sum::<f64>() / JOINTS as f64
+}
