@@ -99,6 +99,20 @@ impl ViewEncoders {
         scratch: &mut Scratch,
         x: &mut [f64],
     ) -> Result<()> {
+        let all: Vec<Option<&[f32]>> = contexts.iter().map(|view| Some(view.as_ref())).collect();
+        self.describe_some(&all, scratch, x)
+    }
+
+    /// Joins the codes of the views that there are into `x`; the part of one that is missing is zero.
+    ///
+    /// # Errors
+    /// As of [`describe`](Self::describe).
+    pub fn describe_some(
+        &self,
+        contexts: &[Option<&[f32]>],
+        scratch: &mut Scratch,
+        x: &mut [f64],
+    ) -> Result<()> {
         if contexts.len() != self.views.len() {
             return Err(Error::ViewCount { expected: self.views.len(), found: contexts.len() });
         }
@@ -109,8 +123,12 @@ impl ViewEncoders {
         for (view, (encoder, contexts)) in self.views.iter().zip(contexts).enumerate() {
             let part;
             (part, rest) = rest.split_at_mut(encoder.dim());
+            let Some(contexts) = contexts else {
+                part.fill(0.0);
+                continue;
+            };
             encoder
-                .encode(contexts.as_ref(), &mut scratch.coding, part)
+                .encode(contexts, &mut scratch.coding, part)
                 .map_err(|reason| Error::View { view, reason })?;
         }
         Ok(())

@@ -336,3 +336,12 @@ fn parts_that_do_not_fit_are_refused() {
     let error = serde_json::from_str::<ViewEncoders>(&greedy).unwrap_err().to_string();
     assert!(error.contains("10 neighbours among 9 centres"), "{error}");
 }
+
+#[test]
+fn the_code_of_a_view_that_is_missing_is_zero() {
+    let codebook = Codebook::from_parts(vec![1.0, 0.0, 0.0, 1.0], 2, 0.1).unwrap();
+    let joined = ViewEncoders::soft_histograms(vec![codebook; 2], SoftAssignment::HARD).unwrap();
+    let (mut x, mut scratch) = ([f64::NAN; 4], Scratch::default());
+    joined.describe_some(&[Some(&[0.9, 0.1]), None], &mut scratch, &mut x).unwrap();
+    assert_eq!(x, [1.0, 0.0, 0.0, 0.0]);
+}

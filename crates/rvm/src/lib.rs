@@ -23,6 +23,7 @@ pub use data::size::ProblemSize;
 pub use error::{Error, Result};
 pub use faer;
 pub use mlp::MlpTrainer;
+pub use mlp::missing::{IncompleteFit, MissingInputs};
 pub use mlp::network::{Mlp, MlpParts};
 pub use mlp::pca_mlp::PcaMlp;
 pub use model::Model;

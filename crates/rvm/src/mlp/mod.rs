@@ -2,9 +2,11 @@
 
 mod adam;
 mod layers;
+pub(crate) mod missing;
 pub(crate) mod network;
 pub(crate) mod pca_mlp;
 mod samples;
+mod scaling;
 
 use faer::{Mat, MatRef};
 use phalanx_sampling::shuffle;
@@ -17,8 +19,10 @@ use crate::data::scaler::StandardScaler;
 use crate::error::{Error, Result};
 use crate::mlp::adam::Adam;
 use crate::mlp::layers::{DropoutMask, Layers, Pass};
+use crate::mlp::missing::{Absence, IncompleteFit, MissingInputs};
 use crate::mlp::network::{Mlp, MlpParts};
-use crate::mlp::samples::{Samples, Scaling, check_inputs};
+use crate::mlp::samples::{Samples, check_inputs};
+use crate::mlp::scaling::Scaling;
 use crate::model::report::{Fit, Report, Trace};
 use crate::transform::affine_map::AffineMap;
 
@@ -94,6 +98,35 @@ impl MlpTrainer {
         y: MatRef<'_, f64>,
         observe: &mut dyn FnMut(usize),
     ) -> Result<Fit<Mlp>> {
+        Ok(self.learn(x, y, None, observe)?.0)
+    }
+
+    /// Like [`fit_single`](Self::fit_single); then the perceptron learns for `epochs` more from samples of
+    /// which inputs are missing, each time others. Both are returned, the first as `fit_single` returns it.
+    pub fn fit_incomplete(
+        &self,
+        x: MatRef<'_, f32>,
+        y: MatRef<'_, f64>,
+        missing: &MissingInputs,
+        epochs: usize,
+        observe: &mut dyn FnMut(usize),
+    ) -> Result<(Fit<Mlp>, IncompleteFit)> {
+        missing.check(x.nrows())?;
+        let further = Self { epochs, ..self.clone() };
+        further.check()?;
+        let (fit, incomplete) = self.learn(x, y, Some((missing, &further)), observe)?;
+        let incomplete =
+            incomplete.ok_or(Error::Parts { field: "present", problem: "is empty" })?;
+        Ok((fit, incomplete))
+    }
+
+    fn learn(
+        &self,
+        x: MatRef<'_, f32>,
+        y: MatRef<'_, f64>,
+        further: Option<(&MissingInputs, &Self)>,
+        observe: &mut dyn FnMut(usize),
+    ) -> Result<(Fit<Mlp>, Option<IncompleteFit>)> {
         self.check()?;
         check_inputs(x)?;
         let targets = StandardScaler::fit(y)?;
@@ -104,19 +137,33 @@ impl MlpTrainer {
         let mut layers = Layers::new(self.widths(x.nrows(), &samples), &mut random);
         let mut errors = Vec::with_capacity(self.epochs);
         if samples.y.nrows() > 0 {
-            self.descend(&samples, &mut layers, &mut random, &mut |layers, epoch| {
+            self.descend(&samples, None, &mut layers, &mut random, &mut |layers, epoch| {
                 errors.push(samples.mean_error(layers));
                 observe(epoch);
             });
         }
-        let network = Mlp::from_parts(MlpParts {
-            layers: folded(&layers, &scaling, &targets)?,
-            mean: targets.mean().to_vec(),
-            scale: targets.scale().to_vec(),
-            std: samples.deviations(&layers, &targets),
-        })?;
+        let network = |layers: &Layers, std: Vec<f64>| -> Result<Mlp> {
+            Mlp::from_parts(MlpParts {
+                layers: folded(layers, &scaling, &targets)?,
+                mean: targets.mean().to_vec(),
+                scale: targets.scale().to_vec(),
+                std,
+            })
+        };
+        let model = network(&layers, samples.deviations(&layers, &targets, None))?;
         let trace = Trace { converged: true, objective: errors };
-        Ok(Fit { model: network, report: Report::new(vec![trace], None) })
+        let fit = Fit { model, report: Report::new(vec![trace], None) };
+        let Some((missing, further)) = further else { return Ok((fit, None)) };
+        let absence = Absence::new(missing, &scaling);
+        if samples.y.nrows() > 0 {
+            further.descend(&samples, Some(&absence), &mut layers, &mut random, &mut |_, epoch| {
+                observe(self.epochs + epoch);
+            });
+        }
+        let of_set = |&set: &u64| samples.deviations(&layers, &targets, Some((&absence, set)));
+        let deviations: Vec<Vec<f64>> = missing.present.iter().map(of_set).collect();
+        let model = network(&layers, deviations[0].clone())?;
+        Ok((fit, Some(IncompleteFit { model, deviations })))
     }
 
     /// Checks the settings before there are data. The number of samples is not limited.
@@ -149,6 +196,7 @@ impl MlpTrainer {
     fn descend(
         &self,
         samples: &Samples<'_>,
+        absence: Option<&Absence<'_>>,
         layers: &mut Layers,
         random: &mut Pcg64Mcg,
         after: &mut dyn FnMut(&Layers, usize),
@@ -166,10 +214,14 @@ impl MlpTrainer {
                 let seeds: Vec<u64> = passes.iter().map(|_| random.next_u64()).collect();
                 let parts = passes.par_iter_mut().zip(batch.par_chunks(Pass::SAMPLES));
                 parts.zip(seeds).for_each(|((pass, part), seed)| {
-                    let random = Pcg64Mcg::seed_from_u64(seed);
+                    let mut random = Pcg64Mcg::seed_from_u64(seed);
+                    let mut inputs = samples.inputs(part);
+                    if let Some(absence) = absence {
+                        absence.at_random(&mut inputs, &mut random);
+                    }
                     let left_out = DropoutMask { share: self.dropout, random };
                     let left_out = (self.dropout > 0.0).then_some(left_out);
-                    pass.forward(layers, samples.inputs(part), left_out);
+                    pass.forward(layers, inputs, left_out);
                     let count = (batch.len() * samples.y.nrows()) as f32;
                     for (column, &sample) in pass.output_columns().zip(part) {
                         let targets = samples.y.col_as_slice(sample);

@@ -1,12 +1,14 @@
 //! Training samples of a perceptron, and its errors on held-out ones.
 
-use faer::{ColRef, Mat, MatRef};
+use faer::{Mat, MatRef};
 use phalanx_sampling::random_subset;
 use rayon::prelude::*;
 
 use crate::data::scaler::StandardScaler;
 use crate::error::{Error, Result};
 use crate::mlp::layers::{Layers, Pass};
+use crate::mlp::missing::Absence;
+use crate::mlp::scaling::Scaling;
 
 /// One sample in this many is held out.
 const HELD_OUT: usize = 16;
@@ -37,30 +39,6 @@ pub(super) fn check_inputs(x: MatRef<'_, f32>) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// Scaling of the inputs to means of 0 and a mean variance of 1.
-pub(super) struct Scaling {
-    pub(super) mean: Vec<f64>,
-    /// The common factor; 0 if no input varies.
-    pub(super) factor: f64,
-}
-
-impl Scaling {
-    pub(super) fn of(x: MatRef<'_, f32>) -> Self {
-        let count = x.ncols() as f64;
-        let mut mean = vec![0.0; x.nrows()];
-        for column in x.col_iter() {
-            mean.iter_mut().zip(column.iter()).for_each(|(sum, &v)| *sum += f64::from(v) / count);
-        }
-        let offset = |column: ColRef<'_, f32>| -> f64 {
-            column.iter().zip(&mean).map(|(&v, mean)| (f64::from(v) - mean).powi(2)).sum()
-        };
-        let squares: f64 = x.col_iter().map(offset).sum();
-        let variance = squares / (count * x.nrows() as f64);
-        let factor = if variance > 0.0 { variance.sqrt().recip() } else { 0.0 };
-        Self { mean, factor }
-    }
 }
 
 impl<'a> Samples<'a> {
@@ -96,10 +74,14 @@ impl<'a> Samples<'a> {
         if self.held_out.is_empty() { &self.learnt_from } else { &self.held_out }
     }
 
-    /// Prediction errors on these samples, one after the other.
-    fn differences(&self, layers: &Layers) -> Vec<f32> {
+    /// Prediction errors on these samples, one after the other, where what `absence` says is missing.
+    fn differences(&self, layers: &Layers, absence: Option<(&Absence<'_>, u64)>) -> Vec<f32> {
         let differences = |pass: &mut Pass, some: &[usize]| {
-            pass.forward(layers, self.inputs(some), None);
+            let mut inputs = self.inputs(some);
+            if let Some((absence, present)) = absence {
+                absence.leave(present, &mut inputs);
+            }
+            pass.forward(layers, inputs, None);
             let pairs = pass.output_columns().zip(some).flat_map(|(column, &sample)| {
                 let pairs = column.iter().zip(self.y.col_as_slice(sample));
                 pairs.map(|(value, target)| value - target)
@@ -111,19 +93,24 @@ impl<'a> Samples<'a> {
     }
 
     pub(super) fn mean_error(&self, layers: &Layers) -> f64 {
-        let differences = self.differences(layers);
+        let differences = self.differences(layers, None);
         differences.iter().map(|d| f64::from(d.abs())).sum::<f64>() / differences.len() as f64
     }
 
     /// The root mean square error of each target, in its own unit, or the target's own deviation
     /// where too few samples are held out; 0 of those that do not vary.
-    pub(super) fn deviations(&self, layers: &Layers, targets: &StandardScaler) -> Vec<f64> {
+    pub(super) fn deviations(
+        &self,
+        layers: &Layers,
+        targets: &StandardScaler,
+        absence: Option<(&Absence<'_>, u64)>,
+    ) -> Vec<f64> {
         let mut deviations = targets.scale().to_vec();
         let varying = targets.varying();
         if varying.is_empty() || self.held_out.len() < LEAST_HELD_OUT {
             return deviations;
         }
-        let differences = self.differences(layers);
+        let differences = self.differences(layers, absence);
         for (j, &target) in varying.iter().enumerate() {
             let own = differences.iter().skip(j).step_by(varying.len());
             let squares: f64 = own.map(|d| f64::from(*d).powi(2)).sum();

@@ -34,9 +34,13 @@ pub struct BlockPca {
 impl BlockPca {
     /// Fits X (K×I), whose rows are made up of `blocks`.
     pub fn fit(x: MatRef<'_, f64>, blocks: &[FeatureBlock]) -> Result<Self> {
+        Self::of(&of_blocks(x, blocks)?)
+    }
+
+    /// The maps of some components.
+    pub(crate) fn of(parts: &[Pca]) -> Result<Self> {
         let map = |part: &Pca| AffineMap::about(&part.mean, part.matrix.as_ref());
-        let blocks = of_blocks(x, blocks)?.iter().map(map).collect::<Result<_>>()?;
-        Ok(Self { blocks })
+        Ok(Self { blocks: parts.iter().map(map).collect::<Result<_>>()? })
     }
 
     /// Assembles the maps of the blocks, in the order of their inputs.

@@ -16,8 +16,9 @@ use crate::model::Model;
 use crate::ridge::nystrom::NystromRidge;
 use crate::stream::SufficientStatistics;
 use crate::transform::affine_map::AffineMap;
+use crate::transform::block_pca::BlockPca;
 use crate::transform::learned_metric::{LearnedMetric, TargetGroup};
-use crate::transform::pca::{FeatureBlock, of_blocks};
+use crate::transform::pca::{FeatureBlock, Pca, of_blocks};
 
 /// Seeds of the choice of centres, and of the samples whose gradients are averaged.
 const CENTRE_SEED: u64 = 0;
@@ -91,13 +92,25 @@ impl ExpectedGradientOuterProduct {
         blocks: &[FeatureBlock],
         groups: &[Vec<usize>],
     ) -> Result<LearnedMetric> {
+        Ok(self.fit_with_components(x, y, blocks, groups)?.0)
+    }
+
+    /// Like [`fit`](Self::fit), with the principal components that the distances are learned between.
+    pub fn fit_with_components(
+        &self,
+        x: MatRef<'_, f64>,
+        y: MatRef<'_, f64>,
+        blocks: &[FeatureBlock],
+        groups: &[Vec<usize>],
+    ) -> Result<(LearnedMetric, BlockPca)> {
         self.check(ProblemSize::of(x, y))?;
         check::matrix("y", y)?;
         check::length("columns (samples) of y", x.ncols(), y.ncols())?;
         if let Some(&output) = groups.iter().flatten().find(|&&output| output >= y.nrows()) {
             return Err(Error::Index { what: "groups", index: output, available: y.nrows() });
         }
-        let (mean, principal) = components(x, blocks)?;
+        let parts = of_blocks(x, blocks)?;
+        let (mean, principal) = joined(&parts, x.nrows());
         let z = centred_product(principal.as_ref(), x, &mean);
         let gradients = self.gradients(z.as_ref(), y)?;
         let learnt = groups.par_iter().map(|outputs| {
@@ -112,7 +125,8 @@ impl ExpectedGradientOuterProduct {
             .collect();
         let all = stacked(&directions, principal.nrows());
         let matrix = linalg::product(all.as_ref(), principal.as_ref());
-        Ok(LearnedMetric { projection: AffineMap::about(&mean, matrix.as_ref())?, groups })
+        let projection = AffineMap::about(&mean, matrix.as_ref())?;
+        Ok((LearnedMetric { projection, groups }, BlockPca::of(&parts)?))
     }
 
     /// Checks the settings and the size of a problem before there are data. [`fit`](Self::fit) can
@@ -207,19 +221,18 @@ fn centred_product(a: MatRef<'_, f64>, x: MatRef<'_, f64>, mean: &[f64]) -> Mat<
     z
 }
 
-/// The mean of all inputs, and their blocks' principal components, d×K.
-fn components(x: MatRef<'_, f64>, blocks: &[FeatureBlock]) -> Result<(Vec<f64>, Mat<f64>)> {
-    let parts = of_blocks(x, blocks)?;
+/// The mean of all K inputs, and their blocks' principal components, d×K.
+fn joined(parts: &[Pca], inputs: usize) -> (Vec<f64>, Mat<f64>) {
     let mean = parts.iter().flat_map(|part| part.mean.iter().copied()).collect();
     let all = parts.iter().map(|part| part.matrix.nrows()).sum();
-    let mut joined = Mat::zeros(all, x.nrows());
+    let mut joined = Mat::zeros(all, inputs);
     let (mut row, mut column) = (0, 0);
-    for part in &parts {
+    for part in parts {
         let (rows, columns) = part.matrix.shape();
         joined.as_mut().submatrix_mut(row, column, rows, columns).copy_from(&part.matrix);
         (row, column) = (row + rows, column + columns);
     }
-    Ok((mean, joined))
+    (mean, joined)
 }
 
 /// Matrices of d columns, one below the other.

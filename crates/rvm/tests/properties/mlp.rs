@@ -2,8 +2,8 @@
 
 use faer::{Mat, MatRef};
 use phalanx_rvm::{
-    AffineMap, AffineMapParts, BlockPca, Error, FeatureBlock, Fit, Mlp, MlpParts, MlpTrainer,
-    PcaMlp, Regressor, Scratch, random_subset,
+    AffineMap, AffineMapParts, BlockPca, Error, FeatureBlock, Fit, IncompleteFit, MissingInputs,
+    Mlp, MlpParts, MlpTrainer, PcaMlp, Regressor, Scratch, random_subset,
 };
 use proptest::prelude::*;
 
@@ -225,4 +225,60 @@ fn stored_networks_come_back_and_spoilt_ones_do_not() {
     spoilt[1] = 5;
     assert!(postcard::from_bytes::<PcaMlp>(&spoilt).is_err());
     assert!(postcard::from_bytes::<PcaMlp>(&bytes[..bytes.len() - 1]).is_err());
+}
+
+/// Two targets of two inputs, of which either may be missing and is then read as 3.
+fn incomplete(seed: u64) -> (Fit<Mlp>, Fit<Mlp>, IncompleteFit) {
+    let (x, y) = bent(seed, 1600);
+    let single = Mat::from_fn(2, 1600, |i, t| x[(i, t)] as f32);
+    let missing =
+        MissingInputs { groups: vec![0, 1], stand_ins: vec![3.0; 2], present: vec![1, 2] };
+    let fitter = small();
+    let whole = fitter.fit_single(single.as_ref(), y.as_ref(), &mut |_| ()).unwrap();
+    let (first, second) =
+        fitter.fit_incomplete(single.as_ref(), y.as_ref(), &missing, 30, &mut |_| ()).unwrap();
+    (whole, first, second)
+}
+
+#[test]
+fn what_learns_on_without_inputs_is_first_what_it_was() {
+    let (whole, first, _) = incomplete(5);
+    assert_eq!(first.model, whole.model);
+    assert_eq!(first.report, whole.report);
+}
+
+/// The first target is mostly the first input's; each set's deviation is that of what it tells.
+#[test]
+fn what_is_missing_is_not_needed_and_deviations_say_so() {
+    let (_, _, IncompleteFit { model, deviations }) = incomplete(6);
+    let (x, y) = bent(7, 400);
+    for (set, deviations) in deviations.iter().enumerate() {
+        let seen = Mat::from_fn(2, 400, |i, t| if i == set { x[(i, t)] } else { 3.0 });
+        let (mean, _) = predict(&model, seen.as_ref());
+        let squares = (0..400).map(|t| (mean[(0, t)] - y[(0, t)]).powi(2)).sum::<f64>();
+        let error = (squares / 400.0).sqrt();
+        assert!((error / deviations[0] - 1.0).abs() < 0.35, "{set}: {error} {deviations:?}");
+    }
+    let ignored = Mat::from_fn(2, 1, |i, _| [0.4, 3.0][i]);
+    assert!((predict(&model, ignored.as_ref()).0[(0, 0)] - 0.8_f64.sin()).abs() < 0.2);
+    assert!(deviations[0][0] < deviations[1][0], "{deviations:?}");
+}
+
+#[test]
+fn inputs_that_cannot_be_missing_are_refused() {
+    let (x, y) = bent(1, 40);
+    let single = Mat::from_fn(2, 40, |i, t| x[(i, t)] as f32);
+    let good = MissingInputs { groups: vec![0, 1], stand_ins: vec![0.0; 2], present: vec![1] };
+    let spoils: [fn(&mut MissingInputs); 4] = [
+        |missing| missing.groups = vec![0],
+        |missing| missing.groups = vec![0, 64],
+        |missing| missing.stand_ins = vec![f64::NAN; 2],
+        |missing| missing.present = Vec::new(),
+    ];
+    for spoil in spoils {
+        let mut missing = good.clone();
+        spoil(&mut missing);
+        let fitted = small().fit_incomplete(single.as_ref(), y.as_ref(), &missing, 2, &mut |_| ());
+        assert!(fitted.is_err(), "{missing:?}");
+    }
 }
