@@ -159,6 +159,10 @@ fn frame((folder, name): (&Path, &str), found: &Pictures, estimator: &Estimator)
     let mut workspace = Workspace::default();
     let estimate = estimator.estimate(&pictures, &mut workspace)?;
     let doubts = estimator.explain(&pictures, &estimate, &mut workspace)?;
+    let not_seen = doubts.iter().find(|doubt| matches!(doubt.cause, Cause::NotSeen(_)));
+    if let Some(doubt) = not_seen {
+        bail!("camera '{}': {}", estimator.rig().cameras[doubt.view].name, doubt.cause);
+    }
     let said = doubts.iter().map(|doubt| Doubt::of_view(estimator, doubt)).collect();
     Ok(Frame { name: name.to_owned(), estimate, doubts, said })
 }

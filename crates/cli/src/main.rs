@@ -51,7 +51,7 @@ enum Command {
     Merge(train::MergeArguments),
     /// Fit the hand in every frame of a recording, and write its angles.
     Track(track::Arguments),
-    /// Estimate the pose of a hand from one picture per camera.
+    /// Estimate the pose of a hand from a picture of each camera, or of some.
     Estimate(estimate::Arguments),
     /// Fit the proportions of a person's hand to pictures of it.
     CalibrateHand(calibrate_hand::Arguments),

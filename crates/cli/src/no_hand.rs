@@ -1,7 +1,7 @@
 //! Why no hand is found in a picture.
 
 use image::{Rgb, RgbImage};
-use phalanx::{Error, Estimator, Segmenter};
+use phalanx::{Cause, Error, Estimator, LossReason, Segmenter};
 use phalanx_segmentation::Error as Reason;
 
 use crate::segment::Prepared;
@@ -14,19 +14,33 @@ const GREY: u8 = 8;
 pub(crate) fn explained(
     error: Error,
     estimator: &Estimator,
-    pictures: &[Prepared<'_>],
+    pictures: &[Option<Prepared<'_>>],
 ) -> anyhow::Error {
     let Error::Silhouette { camera, reason } = &error else { return error.into() };
     let mut views = estimator.rig().cameras.iter().zip(pictures);
-    match (views.find(|(seeing, _)| seeing.name == *camera), reason) {
-        (
-            Some((_, Prepared::Photograph(photograph, Segmenter::Skin(_)))),
-            Reason::EmptyMask { .. },
-        ) => anyhow::anyhow!("{error}; {}", cause(photograph)),
-        (Some((_, picture)), _) if picture.as_picture().looks_inverted() => {
-            anyhow::anyhow!("{error}; the mask looks inverted: hand should be white")
-        }
-        _ => error.into(),
+    let Some((_, Some(picture))) = views.find(|(seeing, _)| seeing.name == *camera) else {
+        return error.into();
+    };
+    match like(picture, matches!(reason, Reason::EmptyMask { .. })) {
+        Some(like) => anyhow::anyhow!("{error}; {like}"),
+        None => error.into(),
+    }
+}
+
+/// What the picture of a view is like in which no hand was found.
+pub(crate) fn why(cause: Cause, picture: &Prepared<'_>) -> Option<&'static str> {
+    let Cause::NotSeen(reason) = cause else { return None };
+    like(picture, reason == LossReason::NoHand)
+}
+
+/// What a picture is like that shows no silhouette of a hand, or nothing at all.
+fn like(picture: &Prepared<'_>, is_empty: bool) -> Option<&'static str> {
+    match picture {
+        Prepared::Photograph(photograph, Segmenter::Skin(_)) if is_empty => Some(cause(photograph)),
+        picture => picture
+            .as_picture()
+            .looks_inverted()
+            .then_some("the mask looks inverted: hand should be white"),
     }
 }
 

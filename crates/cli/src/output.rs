@@ -3,9 +3,9 @@
 use std::fmt::{self, Display, Formatter, Write as _};
 
 use anyhow::Result;
-use phalanx::{Cause, Estimate, Estimator, ViewDoubt};
+use phalanx::{Cause, Estimate, Estimator, ObservedView, ViewDoubt};
 use phalanx_hand::{Dof, Unit};
-use phalanx_segmentation::{Forearm, ForearmCue};
+use phalanx_segmentation::ForearmCue;
 use serde::{Serialize, Serializer};
 
 /// A frame of several in JSON: its estimate, or why there is none.
@@ -24,6 +24,7 @@ struct Report<'a> {
     pose: Figures<'a>,
     /// 21 joints in the world.
     joints_mm: Vec<[f64; 3]>,
+    /// Those that it is estimated from.
     views: Vec<View<'a>>,
     /// What should be known before the estimate is trusted.
     doubts: &'a [Doubt],
@@ -57,6 +58,14 @@ impl Doubt {
             cause => cause.to_string(),
         };
         Self::view(&cameras[doubt.view].name, doubt.cause.name(), text)
+    }
+
+    /// The same, with a reason.
+    pub(crate) fn because(self, why: Option<&str>) -> Self {
+        match why {
+            Some(why) => Self { text: format!("{}; {why}", self.text), ..self },
+            None => self,
+        }
     }
 }
 
@@ -129,14 +138,16 @@ pub(crate) fn json_line(
 
 impl<'a> Report<'a> {
     fn new(estimator: &'a Estimator, estimate: &'a Estimate, doubts: &'a [Doubt]) -> Self {
-        let views = views(estimator, estimate).enumerate().map(|(view, (camera, forearm))| View {
-            camera,
+        let cameras = &estimator.rig().cameras;
+        let seen = estimate.observation.views.iter().enumerate();
+        let views = seen.map(|(view, ObservedView { camera, silhouette, .. })| View {
+            camera: &cameras[*camera].name,
             overlap: estimate.overlaps.get(view).copied(),
-            forearm: match forearm.cue {
+            forearm: match silhouette.forearm.cue {
                 ForearmCue::Border => "border",
                 ForearmCue::SmoothEnd => "stump",
             },
-            border_crossings: forearm.crossings,
+            border_crossings: silhouette.forearm.crossings,
         });
         Self {
             pose: Figures(estimate),
@@ -165,12 +176,4 @@ pub(crate) fn text(estimate: &Estimate) -> String {
         writeln!(text, "{dof:18} {value:8.1} {spread}").expect("writing to a string");
     }
     text
-}
-
-fn views<'a>(
-    estimator: &'a Estimator,
-    estimate: &'a Estimate,
-) -> impl Iterator<Item = (&'a str, &'a Forearm)> {
-    let names = estimator.rig().cameras.iter().map(|camera| camera.name.as_str());
-    names.zip(estimate.observation.forearms())
 }

@@ -190,6 +190,15 @@ pub enum Error {
         /// How many of them landmarks were given for.
         found: usize,
     },
+    /// A camera that shows no hand to an estimator that needs every camera's view.
+    #[error(
+        "camera '{camera}': nothing is seen of the hand, and the model was not learnt to do without it; a \
+         model of a preset does"
+    )]
+    MissingCamera {
+        /// The camera's name.
+        camera: String,
+    },
     /// A picture whose shape is not that of its camera's image.
     #[error(
         "camera '{camera}': the picture is {}×{}, which is not the shape of the camera's {}×{}; \

@@ -16,6 +16,7 @@ mod refiner;
 mod restarts;
 mod synthesis;
 mod training;
+mod view_set;
 mod window;
 
 pub use checking::doubt::{Cause, ViewDoubt};
@@ -54,6 +55,7 @@ pub use synthesis::scene_describer::{
 };
 pub use training::maker::Maker;
 pub use training::partial::PartialTraining;
+pub use training::plan::Cameras;
 pub use training::preset::Preset;
 pub use training::recipe::{Encoding, Training, descriptors, targets};
 pub use training::regressor::{LearntMetric, NetworkTraining, RegressorConfig};

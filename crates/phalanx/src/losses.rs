@@ -99,6 +99,23 @@ impl Losses {
     }
 }
 
+/// The camera that shows no hand which could be described, and why it is taken not to, if that is the error.
+pub(crate) fn not_seen(error: &Error) -> Option<(&str, LossReason)> {
+    use phalanx_segmentation::Error as Segmentation;
+    let is_of_picture = matches!(
+        error,
+        Error::Silhouette {
+            reason: Segmentation::ImageTooSmall { .. } | Segmentation::SizeMismatch { .. },
+            ..
+        }
+    );
+    match kind(error) {
+        (_, LossReason::NotDrawn | LossReason::Other) => None,
+        _ if is_of_picture => None,
+        not_seen => Some(not_seen),
+    }
+}
+
 fn kind(error: &Error) -> (&str, LossReason) {
     use phalanx_segmentation::Error as Segmentation;
     match error {

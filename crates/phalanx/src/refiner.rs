@@ -144,22 +144,29 @@ impl Refiner {
         Ok(evidence.collect::<Result<_, _>>()?)
     }
 
-    /// What an observation tells of the pose.
+    /// What the views of an observation tell of the pose.
     ///
     /// # Errors
-    /// As of [`evidence`](Self::evidence).
+    /// An observation without views or of more cameras, and as of [`evidence`](Self::evidence).
     pub fn evidence_of(&self, observation: &Observation) -> Result<Vec<SilhouetteObservation>> {
-        self.check_count(observation.views.len())?;
-        let pairs = self.cameras.iter().zip(&observation.views);
-        pairs.map(|(camera, view)| view.evidence(camera)).collect()
+        let last = observation.views.iter().map(|view| view.camera).max();
+        if last.is_none_or(|last| last >= self.cameras.len()) {
+            return Err(self.wrong_count(observation.views.len()));
+        }
+        let views = observation.views.iter();
+        views.map(|view| view.evidence(&self.cameras[view.camera])).collect()
     }
 
     fn check_count(&self, found: usize) -> Result<()> {
         if found == self.cameras.len() {
             return Ok(());
         }
+        Err(self.wrong_count(found))
+    }
+
+    fn wrong_count(&self, found: usize) -> Error {
         let cameras = self.cameras.iter().map(|camera| camera.name.clone()).collect();
-        Err(Error::PictureCount { cameras, found })
+        Error::PictureCount { cameras, found }
     }
 
     /// What is known of a pose once it was estimated: that, and how numbers go together. Numbers that
@@ -215,17 +222,20 @@ impl Refiner {
         Ok(Estimate { pose: refined.pose, std, joints, ..estimate })
     }
 
-    /// Estimates the pose from one picture per camera and refines it, with every hypothesis that the
+    /// Estimates the pose from the cameras' pictures and refines it, with every hypothesis that the
     /// estimator has about it.
     ///
     /// # Errors
     /// As of [`Estimator::estimate`] and [`refine`](Self::refine).
-    pub fn estimate_and_refine(
+    pub fn estimate_and_refine<'p, P>(
         &self,
         estimator: &Estimator,
-        pictures: &[Picture<'_>],
+        pictures: &[P],
         workspace: &mut Workspace,
-    ) -> Result<RefinedEstimate> {
+    ) -> Result<RefinedEstimate>
+    where
+        P: Into<Option<Picture<'p>>> + Copy,
+    {
         self.refine_estimate(estimator, estimator.estimate(pictures, workspace)?)
     }
 
@@ -240,7 +250,7 @@ impl Refiner {
     ) -> Result<RefinedEstimate> {
         let evidence = self.evidence_of(&estimate.observation)?;
         let hypotheses = match estimator.error_model() {
-            Some(_) => estimator.hypotheses(&estimate, self.starts())?,
+            Some(_) => estimator.hypotheses(&estimate, Self::starts(evidence.len()))?,
             None => Vec::new(),
         };
         let mut fits = self.refine_best(&evidence, &estimate, &hypotheses)?.into_iter();

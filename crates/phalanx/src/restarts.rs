@@ -17,10 +17,10 @@ impl Refiner {
     /// Poses that are named at most where several are possible.
     pub const POSES: usize = 5;
 
-    /// How many hypotheses about an estimate are worth refining: one view leaves so much open that more
-    /// starts lead to poses which explain it better.
-    pub fn starts(&self) -> usize {
-        if self.views() == 1 { 2 * Self::POSES } else { Self::POSES }
+    /// How many hypotheses about an estimate from so many views are worth refining: one view leaves so much
+    /// open that more starts lead to poses which explain it better.
+    pub fn starts(views: usize) -> usize {
+        if views == 1 { 2 * Self::POSES } else { Self::POSES }
     }
 
     /// Refines every hypothesis about an estimate, each with what it says of itself as the prior, and

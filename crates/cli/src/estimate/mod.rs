@@ -9,8 +9,8 @@ use anyhow::{Result, bail, ensure};
 use clap::Args;
 use image::{DynamicImage, RgbImage, imageops};
 use phalanx::{
-    Estimate, Estimator, ObservedView, Picture, RefinedEstimate, Refiner, Workspace, draw_overlay,
-    draw_silhouette, draw_window_overlay, mask_from, working_window,
+    Estimate, Estimator, ObservedView, Picture, RefinedEstimate, Refiner, ViewDoubt, Workspace,
+    draw_overlay, draw_silhouette, draw_window_overlay, mask_from, working_window,
 };
 use phalanx_hand::HandShape;
 use phalanx_refine::{NuisanceParameters, PoseFitSettings};
@@ -28,9 +28,10 @@ pub(crate) struct Arguments {
     /// The model, as `phalanx train` writes it.
     #[arg(long, value_name = "FILE")]
     model: PathBuf,
-    /// One picture per camera, in the order in which the model was trained; of several frames all pictures
-    /// of the first, then of the second, and so on. Or a folder per camera (or one that holds them, named
-    /// like the cameras), in which the pictures of one frame have one name.
+    /// One picture per camera, in the order in which the model was trained, `-` for one that there is not; of
+    /// several frames all pictures of the first, then of the second, and so on. Or the pictures that there
+    /// are as CAMERA=IMAGE. Or a folder per camera (or one that holds them, named like the cameras), in which
+    /// the pictures of one frame have one name.
     #[arg(required = true, value_name = "IMAGE")]
     images: Vec<PathBuf>,
     #[command(flatten)]
@@ -65,7 +66,7 @@ struct Setup<'a> {
 struct Answer {
     estimate: Estimate,
     doubts: Vec<Doubt>,
-    pictures: Vec<DynamicImage>,
+    pictures: Vec<Option<DynamicImage>>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
@@ -139,15 +140,13 @@ fn several(setup: &Setup<'_>, stills: &[Still]) -> Result<ExitCode> {
 impl Setup<'_> {
     fn answer(&self, still: &Still, workspace: &mut Workspace) -> Result<Answer> {
         let Self { arguments, estimator, hand, .. } = self;
-        let cameras = &estimator.rig().cameras;
-        if let Some(view) = still.paths.iter().position(Option::is_none) {
-            bail!("camera '{}' has no picture of this frame", cameras[view].name);
-        }
-        let paths: Vec<PathBuf> = still.paths.iter().flatten().cloned().collect();
-        let pictures = paths.iter().map(|path| input::picture(path, arguments.crop));
-        let pictures = pictures.collect::<Result<Vec<_>>>()?;
-        let prepared = self.prepared(&paths, &pictures)?;
-        let views: Vec<Picture<'_>> = prepared.iter().map(Prepared::as_picture).collect();
+        let picture = |path: &Option<PathBuf>| -> Result<Option<DynamicImage>> {
+            path.as_ref().map(|path| input::picture(path, arguments.crop)).transpose()
+        };
+        let pictures = still.paths.iter().map(picture).collect::<Result<Vec<_>>>()?;
+        let prepared = self.prepared(&still.paths, &pictures)?;
+        let views: Vec<Option<Picture<'_>>> =
+            prepared.iter().map(|picture| picture.as_ref().map(Prepared::as_picture)).collect();
         let estimate = estimator
             .estimate(&views, workspace)
             .map_err(|error| no_hand::explained(error, estimator, &prepared))?;
@@ -158,19 +157,32 @@ impl Setup<'_> {
             estimate
         };
         let of_views = estimator.explain(&views, &estimate, workspace)?;
-        doubts.extend(of_views.iter().map(|doubt| Doubt::of_view(estimator, doubt)));
+        let in_words = |doubt: &ViewDoubt| {
+            let why =
+                prepared[doubt.view].as_ref().and_then(|seen| no_hand::why(doubt.cause, seen));
+            Doubt::of_view(estimator, doubt).because(why)
+        };
+        doubts.extend(of_views.iter().map(in_words));
         Ok(Answer { estimate, doubts, pictures })
     }
 
     /// The pictures as the estimator takes them.
-    fn prepared(&self, paths: &[PathBuf], pictures: &[DynamicImage]) -> Result<Vec<Prepared<'_>>> {
+    fn prepared(
+        &self,
+        paths: &[Option<PathBuf>],
+        pictures: &[Option<DynamicImage>],
+    ) -> Result<Vec<Option<Prepared<'_>>>> {
         if matches!(self.pictures, Pictures::Masks) {
-            check_levels(paths, pictures)?;
+            let mut given = paths.iter().flatten().zip(pictures.iter().flatten());
+            given.try_for_each(|(path, picture)| check_levels(path, picture))?;
         }
         // More pictures than cameras are the estimator's to refuse.
         let names = self.estimator.rig().cameras.iter().map(|camera| camera.name.as_str());
         let named = pictures.iter().zip(names.chain(std::iter::repeat("")));
-        named.map(|(picture, name)| self.pictures.prepared(name, picture)).collect()
+        let prepared = |(picture, name): (&Option<DynamicImage>, &str)| {
+            picture.as_ref().map(|picture| self.pictures.prepared(name, picture)).transpose()
+        };
+        named.map(prepared).collect()
     }
 }
 
@@ -209,32 +221,32 @@ fn is_png(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
-/// Refuses masks in which nothing is hand, but something may have been meant to be.
-fn check_levels(paths: &[PathBuf], pictures: &[DynamicImage]) -> Result<()> {
-    for (path, picture) in paths.iter().zip(pictures) {
-        if let Some(level @ 1..=127) = mask_from(picture).iter().max() {
-            bail!(
-                "{}: brighter than 127 is hand; the brightest pixel has level {level}",
-                path.display()
-            );
-        }
+/// Refuses a mask in which nothing is hand, but something may have been meant to be.
+fn check_levels(path: &Path, picture: &DynamicImage) -> Result<()> {
+    if let Some(level @ 1..=127) = mask_from(picture).iter().max() {
+        bail!(
+            "{}: brighter than 127 is hand; the brightest pixel has level {level}",
+            path.display()
+        );
     }
     Ok(())
 }
 
-/// The pictures side by side with what was seen and estimated. An estimated hand that cannot be
-/// drawn is a doubt.
+/// The pictures that show the hand, side by side with what was seen and estimated. An estimated hand that
+/// cannot be drawn is a doubt.
 fn overlay(
     estimator: &Estimator,
     hand: &HandShape,
     estimate: &Estimate,
-    pictures: &[DynamicImage],
+    pictures: &[Option<DynamicImage>],
     doubts: &mut Vec<Doubt>,
 ) -> Result<RgbImage> {
     let rest = estimator.rig().volume.rest_frame();
     let mut panels = Vec::new();
-    for (view, camera) in estimator.rig().cameras.iter().enumerate() {
-        let ObservedView { silhouette: observed, window, .. } = &estimate.observation.views[view];
+    for ObservedView { camera: view, silhouette: observed, window, .. } in
+        &estimate.observation.views
+    {
+        let camera = &estimator.rig().cameras[*view];
         let drawn_by = window.as_ref().map_or(camera, |window| &window.camera);
         let drawn = draw_silhouette(drawn_by, hand, &estimate.pose, &rest);
         let estimated = drawn
@@ -244,7 +256,8 @@ fn overlay(
             let text = format!("the estimated hand is not drawn: {reason}");
             doubts.push(Doubt::view(&camera.name, "not_drawn", text));
         }
-        let mut canvas = pictures[view].to_rgb8();
+        let Some(picture) = &pictures[*view] else { continue };
+        let mut canvas = picture.to_rgb8();
         let estimated = estimated.as_ref().ok();
         if let Some(window) = window {
             draw_window_overlay(&mut canvas, window, observed, estimated);

@@ -38,14 +38,14 @@ pub(crate) fn assign(cameras: &[Camera], recordings: &[String]) -> Result<Vec<Op
         let (camera, path) =
             if is_named { named(cameras, recording).context("named")? } else { (k, &**recording) };
         if assigned[camera].replace(PathBuf::from(path)).is_some() {
-            bail!("camera '{}' has two recordings", cameras[camera].name);
+            bail!("camera '{}' is given twice", cameras[camera].name);
         }
     }
     Ok(assigned)
 }
 
-/// A recording as `NAME=PATH`.
-fn named<'a>(cameras: &[Camera], recording: &'a str) -> Option<(usize, &'a str)> {
+/// A recording as `NAME=PATH`: the number of the camera, and the path.
+pub(crate) fn named<'a>(cameras: &[Camera], recording: &'a str) -> Option<(usize, &'a str)> {
     let (name, path) = recording.split_once('=')?;
     Some((cameras.iter().position(|camera| camera.name == name)?, path))
 }

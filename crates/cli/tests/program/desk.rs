@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use glam::DVec3;
 use image::DynamicImage;
-use phalanx::{Estimator, FixedPoses, NoProgress, Training, draw_silhouette};
+use phalanx::{Estimator, FixedPoses, NoProgress, Preset, Training, draw_silhouette};
 use phalanx_camera::Rig;
 use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
 use phalanx_multiview::CodebookTrainer;
@@ -74,6 +74,22 @@ impl Desk {
         let model = Estimator::from_bytes(&self.read("model")).unwrap();
         let model = model.fit_error_model(&scenes, &NoProgress).unwrap();
         self.write("model", &model.to_bytes().unwrap());
+    }
+
+    /// Makes `model` one that answers any of its cameras.
+    pub(crate) fn learn_any_cameras(&self) {
+        let mut training = Preset::Fast.training();
+        (training.vocabulary.centres, training.vocabulary.most_samples) = (12, 2000);
+        // Every digit and the whole hand move.
+        let moving = |k: u8| {
+            let mut pose = closing(f64::from(k) / 63.0);
+            pose[Dof::ThumbMcp] = 0.01 * f64::from(k % 32);
+            pose[Dof::ThetaZ] = 0.01 * f64::from(k % 16);
+            pose
+        };
+        let poses: Vec<Pose> = (0..64).map(moving).collect();
+        let estimator = training.run(&rig(), &HandShape::adult(), &poses, &NoProgress).unwrap();
+        self.write("model", &estimator.to_bytes().unwrap());
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {

@@ -284,7 +284,53 @@ fn several_frames_are_estimated_by_one_run() {
     assert!(outcome.err.contains("--overlay draws one frame; 3 are given"), "{}", outcome.err);
     std::fs::remove_file(desk.path("takes/side/2.png")).unwrap();
     let outcome = desk.estimate(&["--mask", "--json", "takes"]);
-    assert!(outcome.out.contains("camera 'side' has no picture of this frame"), "{}", outcome.out);
+    assert!(outcome.out.contains("camera 'side': nothing is seen of the hand"), "{}", outcome.out);
+}
+
+#[test]
+fn some_of_the_cameras_answer_and_are_said() {
+    let desk = Desk::new();
+    desk.learn_any_cameras();
+    let expected = json(&desk, &["--mask", "top=top-mask.png"]);
+    let cameras = |report: &Value| -> Vec<Value> {
+        let views = report["views"].as_array().unwrap().iter();
+        views.map(|view| view["camera"].clone()).collect()
+    };
+    assert_eq!(cameras(&expected), ["top"]);
+    let both = json(&desk, &MASKS);
+    assert_eq!(cameras(&both), CAMERAS);
+    assert_eq!(json(&desk, &["--mask", "top=top-mask.png", "side=side-mask.png"]), both);
+    assert_eq!(json(&desk, &["--mask", "-", "top-mask.png"]), expected);
+    let refined = desk.estimate(&["--mask", "-", "top-mask.png", "--refine"]);
+    assert_eq!(refined.code, Some(0), "{}", refined.err);
+    well(desk.estimate(&["--mask", "-", "top-mask.png", "--overlay", "seen.png"]));
+    assert_eq!(desk.open("seen.png").width(), desk.open("top-mask.png").width());
+
+    desk.save("empty.png", &image::GrayImage::new(120, 90).into());
+    let blank = desk.estimate(&["--json", "--mask", "empty.png", "top-mask.png"]);
+    assert!(
+        blank.err.starts_with("phalanx: camera 'side': no hand in the picture; "),
+        "{}",
+        blank.err
+    );
+    let blank: Value = serde_json::from_str(&blank.out).unwrap();
+    assert_eq!((&blank["pose"], &blank["views"]), (&expected["pose"], &expected["views"]));
+    let doubt = &blank["doubts"][0];
+    assert_eq!((&doubt["view"], &doubt["cause"]), (&"side".into(), &"not_seen".into()));
+
+    std::fs::create_dir_all(desk.path("takes/top")).unwrap();
+    std::fs::copy(desk.path("top-mask.png"), desk.path("takes/top/a.png")).unwrap();
+    for folder in ["takes", "top=takes/top"] {
+        assert_eq!(json(&desk, &["--mask", folder])["pose"], expected["pose"]);
+    }
+    let refused = |given: &[&str], said: &str| {
+        let outcome = desk.estimate(&[&["--mask"], given].concat());
+        assert_eq!(outcome.code, Some(2), "{given:?}");
+        assert!(outcome.err.contains(said), "{given:?}: {}", outcome.err);
+    };
+    refused(&["-", "-"], "one picture per camera, 2 (side, top), found 0");
+    refused(&["top=top-mask.png", "top=top-mask.png"], "camera 'top' is given twice");
+    refused(&["empty.png", "empty.png"], "camera 'side': empty mask");
 }
 
 /// Desk pictures before a background that a model of skin cannot tell from the hand.

@@ -154,7 +154,7 @@ fn hypotheses(
         let silhouettes: Vec<_> = describer.silhouettes(&scene)?.cloned().collect();
         let estimate = estimator.estimate_silhouettes(&silhouettes, workspace)?;
         let hypotheses = estimator.hypotheses(&estimate, MOST)?;
-        let starts = estimator.hypotheses(&estimate, refiner.starts())?;
+        let starts = estimator.hypotheses(&estimate, Refiner::starts(refiner.views()))?;
         let evidence = refiner.evidence(&silhouettes)?;
         let refined = refiner.refine_hypotheses(&evidence, &estimate, &starts)?;
         let alone = refiner.refine(&evidence, &estimate)?;

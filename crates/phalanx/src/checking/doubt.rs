@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Display, Formatter};
 
+use crate::losses::LossReason;
+
 /// Why an answer may be wrong, as one view shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewDoubt {
@@ -15,6 +17,8 @@ pub struct ViewDoubt {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
+    /// No hand was found in it, for this reason; the answer is from the other views.
+    NotSeen(LossReason),
     /// The forearm does not reach the border of the picture; its end was guessed.
     GuessedForearm,
     /// The hand crosses the border of the picture more than once.
@@ -47,6 +51,7 @@ impl Cause {
     /// A short name, for programs.
     pub fn name(self) -> &'static str {
         match self {
+            Self::NotSeen(_) => "not_seen",
             Self::GuessedForearm => "guessed_forearm",
             Self::BorderCrossings(_) => "border_crossings",
             Self::CutOff => "cut_off",
@@ -70,6 +75,9 @@ impl Display for Cause {
                     "the hand crosses the border {crossings} times; the longest crossing is taken for \
                      the forearm"
                 );
+            }
+            Self::NotSeen(reason) => {
+                return write!(out, "{reason}; the estimate is from the other views");
             }
             Self::GuessedForearm => {
                 "the forearm does not reach the border of the picture; its end was guessed"

@@ -6,15 +6,18 @@ use phalanx_segmentation::{Forearm, ForearmCue};
 use crate::checking::doubt::{Cause, ViewDoubt};
 use crate::estimator::estimate::Estimate;
 
-/// All doubts about an estimate that explains some views less well than is usual, view by view.
+/// All doubts about an estimate that explains some views, by their place in the observation, less well than
+/// is usual; view by view.
 pub(crate) fn of(rig: &Rig, short: &[usize], estimate: &Estimate) -> Vec<ViewDoubt> {
-    let unlike = short.iter().map(|&view| {
+    let cameras: Vec<usize> = estimate.observation.views.iter().map(|view| view.camera).collect();
+    let unlike = short.iter().map(|&place| {
+        let view = cameras[place];
         let is_cut_off = !sees_all(&rig.cameras[view], estimate);
         ViewDoubt { view, cause: if is_cut_off { Cause::CutOff } else { Cause::Unlike } }
     });
-    let forearms = estimate.observation.forearms().enumerate();
+    let forearms = cameras.iter().zip(estimate.observation.forearms());
     let guessed = forearms
-        .filter_map(|(view, forearm)| Some(ViewDoubt { view, cause: of_forearm(forearm)? }));
+        .filter_map(|(&view, forearm)| Some(ViewDoubt { view, cause: of_forearm(forearm)? }));
     let mut doubts: Vec<ViewDoubt> = guessed.chain(unlike).collect();
     doubts.sort_by_key(|doubt| doubt.view);
     doubts

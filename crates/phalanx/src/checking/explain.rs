@@ -7,9 +7,10 @@ use phalanx_refine::PosePrior;
 
 use crate::checking::doubt::{Cause, ViewDoubt};
 use crate::checking::quick_fit::{Fitted, QuickFit};
-use crate::checking::usual::{UsualExplanation, mean};
+use crate::checking::usual::mean;
 use crate::error::Result;
 use crate::estimator::estimate::{Estimate, Estimator, Workspace};
+use crate::estimator::expert::Expert;
 use crate::estimator::placement::PLACED;
 use crate::images::picture::Picture;
 use crate::localize::global_pose::initial_global;
@@ -42,30 +43,49 @@ impl Estimator {
     ///
     /// # Errors
     /// As of [`estimate`](Self::estimate).
-    pub fn explain(
+    pub fn explain<'p, P>(
         &self,
-        pictures: &[Picture<'_>],
+        pictures: &[P],
         estimate: &Estimate,
         workspace: &mut Workspace,
-    ) -> Result<Vec<ViewDoubt>> {
+    ) -> Result<Vec<ViewDoubt>>
+    where
+        P: Into<Option<Picture<'p>>> + Copy,
+    {
         let (unlike, mut doubts): (Vec<ViewDoubt>, Vec<ViewDoubt>) =
             estimate.doubts.iter().partition(|doubt| doubt.cause.is_unexplained());
-        let Some(errors) = self.error_model().filter(|_| !unlike.is_empty()) else {
+        let expert = self.expert(&estimate.observation)?;
+        if unlike.is_empty() || expert.errors.is_none() {
             return Ok(estimate.doubts.clone());
+        }
+        let views = estimate.observation.views.iter();
+        let picture = |camera: usize| -> Option<Seen<'p>> {
+            Some(Seen { camera, picture: (*pictures.get(camera)?).into()? })
         };
-        let diagnosis =
-            Diagnosis { estimator: self, usual: &errors.usual, pictures, estimate, unlike };
+        let seen: Vec<Seen<'p>> = views.filter_map(|view| picture(view.camera)).collect();
+        if seen.len() != estimate.observation.views.len() {
+            return Ok(estimate.doubts.clone());
+        }
+        let diagnosis = Diagnosis { estimator: self, expert, seen, estimate, unlike };
         doubts.extend(diagnosis.causes(workspace)?);
         doubts.sort_by_key(|doubt| doubt.view);
         Ok(doubts)
     }
 }
 
+/// A picture that shows the hand.
+#[derive(Clone, Copy)]
+struct Seen<'a> {
+    camera: usize,
+    picture: Picture<'a>,
+}
+
 /// An answer that does not explain what was seen.
 struct Diagnosis<'a> {
     estimator: &'a Estimator,
-    usual: &'a UsualExplanation,
-    pictures: &'a [Picture<'a>],
+    expert: Expert<'a>,
+    /// The pictures of the views that it is an answer to.
+    seen: Vec<Seen<'a>>,
     estimate: &'a Estimate,
     /// The views that it does not explain.
     unlike: Vec<ViewDoubt>,
@@ -73,28 +93,30 @@ struct Diagnosis<'a> {
 
 impl Diagnosis<'_> {
     fn causes(&self, workspace: &mut Workspace) -> Result<Vec<ViewDoubt>> {
-        let inverted: Vec<ViewDoubt> = (0..self.pictures.len())
-            .filter(|&view| self.pictures[view].looks_inverted())
-            .map(|view| ViewDoubt { view, cause: Cause::InvertedMask })
+        let inverted: Vec<ViewDoubt> = self
+            .seen
+            .iter()
+            .filter(|seen| seen.picture.looks_inverted())
+            .map(|seen| ViewDoubt { view: seen.camera, cause: Cause::InvertedMask })
             .collect();
         if !inverted.is_empty() {
             return Ok(inverted);
         }
         let mut readings = vec![self.another_pose()?];
-        if self.pictures.len() > 1 {
+        if self.seen.len() > 1 {
             readings.push(self.other_side()?);
-            for order in orders(self.pictures.len()) {
+            for order in orders(self.seen.len()) {
                 readings.push(self.in_order(&order, workspace)?);
             }
         }
         let explaining = readings.into_iter().flatten();
-        let explaining = explaining
-            .filter(|reading| self.usual.short_of_borders(&reading.fitted.borders).is_empty());
+        let explaining =
+            explaining.filter(|reading| self.short_of_borders(&reading.fitted).is_empty());
         if let Some(reading) = best(explaining) {
             return Ok(reading.causes);
         }
         Ok(match self.foreign_view()? {
-            Some(view) => vec![ViewDoubt { view, cause: self.foreign(view) }],
+            Some(seen) => vec![ViewDoubt { view: seen.camera, cause: seen.foreign() }],
             None => self.unlike.iter().map(|doubt| self.unexplained(*doubt)).collect(),
         })
     }
@@ -118,25 +140,32 @@ impl Diagnosis<'_> {
         Ok(fitted.map(|fitted| Reading { causes: self.all(Cause::OtherSide), fitted }))
     }
 
-    /// Each view shows what another camera should see: view `v` what camera `order[v]` should.
+    /// Each view shows what the camera of another should see: view `v` what that of view `order[v]` should.
     fn in_order(&self, order: &[usize], workspace: &mut Workspace) -> Result<Option<Reading>> {
-        let mut pictures = self.pictures.to_vec();
-        for (view, &camera) in order.iter().enumerate() {
-            pictures[camera] = self.pictures[view];
+        let mut pictures = vec![None; self.estimator.rig().cameras.len()];
+        for (seen, &other) in self.seen.iter().zip(order) {
+            pictures[self.seen[other].camera] = Some(seen.picture);
         }
         // Pictures that another camera cannot have taken are not its own.
         let Ok(estimate) = self.estimator.estimate(&pictures, workspace) else { return Ok(None) };
+        if estimate.observation.views.len() < self.seen.len() {
+            return Ok(None);
+        }
         let fitted = self.fit(&self.quick_fit(&estimate), self.estimator.hand(), &estimate)?;
-        let moved = order.iter().enumerate().filter(|(view, camera)| view != *camera);
+        let moved = self.seen.iter().zip(order.iter().map(|&other| self.seen[other].camera));
         let causes = moved
-            .map(|(view, &camera)| ViewDoubt { view, cause: Cause::SwappedCamera(camera) })
+            .filter(|(seen, camera)| seen.camera != *camera)
+            .map(|(seen, camera)| ViewDoubt {
+                view: seen.camera,
+                cause: Cause::SwappedCamera(camera),
+            })
             .collect();
         Ok(fitted.map(|fitted| Reading { causes, fitted }))
     }
 
     /// The view without which all others are explained, if there are enough to tell.
-    fn foreign_view(&self) -> Result<Option<usize>> {
-        let views = self.pictures.len();
+    fn foreign_view(&self) -> Result<Option<Seen<'_>>> {
+        let views = self.seen.len();
         if views < 3 {
             return Ok(None);
         }
@@ -148,12 +177,16 @@ impl Diagnosis<'_> {
                 continue;
             };
             let explained = mean(&fitted.borders);
-            let short = self.usual.short_of_borders(&fitted.borders);
+            let short = self.short_of_borders(&fitted);
             if short.iter().all(|&short| short == view) && explained > likeliest.0 {
-                likeliest = (explained, Some(view));
+                likeliest = (explained, Some(self.seen[view]));
             }
         }
         Ok(likeliest.1)
+    }
+
+    fn short_of_borders(&self, fitted: &Fitted) -> Vec<usize> {
+        self.expert.short_of_borders(&self.estimate.observation, &fitted.borders)
     }
 
     fn quick_fit(&self, estimate: &Estimate) -> QuickFit {
@@ -191,18 +224,21 @@ impl Diagnosis<'_> {
         self.unlike.iter().map(|doubt| ViewDoubt { cause, ..*doubt }).collect()
     }
 
-    /// What is wrong with a view that shows something else.
-    fn foreign(&self, view: usize) -> Cause {
-        match self.pictures[view] {
-            Picture::Photograph(..) => Cause::Segmentation,
-            Picture::Mask(_) => Cause::ForeignMask,
+    fn unexplained(&self, doubt: ViewDoubt) -> ViewDoubt {
+        let seen = self.seen.iter().find(|seen| seen.camera == doubt.view);
+        match (doubt.cause, seen) {
+            (Cause::CutOff, _) | (_, None) => doubt,
+            (_, Some(seen)) => ViewDoubt { cause: seen.foreign(), ..doubt },
         }
     }
+}
 
-    fn unexplained(&self, doubt: ViewDoubt) -> ViewDoubt {
-        match doubt.cause {
-            Cause::CutOff => doubt,
-            _ => ViewDoubt { cause: self.foreign(doubt.view), ..doubt },
+impl Seen<'_> {
+    /// What is wrong with a view that shows something else.
+    fn foreign(&self) -> Cause {
+        match self.picture {
+            Picture::Photograph(..) => Cause::Segmentation,
+            Picture::Mask(_) => Cause::ForeignMask,
         }
     }
 }

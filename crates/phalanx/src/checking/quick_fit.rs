@@ -29,8 +29,11 @@ pub(crate) struct Fitted {
 
 impl QuickFit {
     pub(crate) fn new(cameras: &[Camera], rest: DAffine3, observation: &Observation) -> Self {
-        let views = cameras.iter().zip(&observation.views);
-        Self { rest, evidence: views.map(|(camera, view)| view.evidence(camera).ok()).collect() }
+        let views = observation.views.iter();
+        Self {
+            rest,
+            evidence: views.map(|view| view.evidence(&cameras[view.camera]).ok()).collect(),
+        }
     }
 
     /// The same without a view.

@@ -1,25 +1,30 @@
-//! The fitted estimator: from one picture per camera to a pose.
+//! The fitted estimator: from the cameras' pictures to a pose.
 
 use glam::DVec3;
-use phalanx_camera::Rig;
+use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{Dof, HandShape, JOINTS, Pose};
 use phalanx_refine::PosePrior;
 use phalanx_segmentation::{Mask, Silhouette};
 
-use crate::checking::doubt::ViewDoubt;
+use crate::checking::doubt::{Cause, ViewDoubt};
 use crate::checking::quick_fit::QuickFit;
 use crate::checking::usual::Explanation;
 use crate::checking::{doubts, redraw};
 use crate::error::{Error, Result};
 use crate::estimator::error_model::ErrorModel;
+use crate::estimator::expert::Expert;
 use crate::estimator::observation::{Observation, ObservedView};
 use crate::estimator::placement::{PlacementErrors, place};
 use crate::estimator::regression::FittedRegressor;
+use crate::estimator::subset_regression;
+use crate::estimator::subset_regression::SubsetRegression;
 use crate::features::describer::OrientationRule;
 use crate::features::descriptor;
 use crate::features::descriptor::Descriptor;
 use crate::images::picture::Picture;
+use crate::losses;
 use crate::synthesis::postures;
+use crate::view_set::ViewSet;
 use crate::window::{Framing, WindowFinder};
 
 /// A pose estimator for one rig and one hand; see [`Training`](crate::Training) for how to get
@@ -31,6 +36,15 @@ pub struct Estimator {
     descriptor: Descriptor,
     regression: FittedRegressor,
     errors: Option<ErrorModel>,
+    subsets: Option<Subsets>,
+}
+
+/// What answers where some of the cameras are missing.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Subsets {
+    pub(crate) regression: SubsetRegression,
+    /// How the answers of each learnt subset err; empty where that is not known.
+    pub(crate) errors: Vec<ErrorModel>,
 }
 
 /// What is known of a hand after looking at it.
@@ -45,8 +59,8 @@ pub struct Estimate {
     pub joints: [DVec3; JOINTS],
     /// What was seen.
     pub observation: Observation,
-    /// How well the hand, drawn again, and what each view shows agree: intersection over union, 0 to 1.
-    /// None where silhouettes were given without the windows that they are seen in.
+    /// How well the hand, drawn again, and what each view of the observation shows agree: intersection over
+    /// union, 0 to 1. None where silhouettes were given without the windows that they are seen in.
     pub overlaps: Vec<f64>,
     /// Why the answer may be wrong. An estimator that has not
     /// [learnt how it errs](Estimator::fit_error_model) does not know which overlaps are usual.
@@ -59,6 +73,7 @@ pub struct Workspace {
     windows: WindowFinder,
     description: descriptor::Memory,
     x: Vec<f64>,
+    subsets: subset_regression::Memory,
     regression: phalanx_rvm::Scratch,
 }
 
@@ -85,7 +100,36 @@ impl Estimator {
                 return Err(Error::Mismatch { part, found, expected });
             }
         }
-        Ok(Self { rig, hand, descriptor, regression, errors: None })
+        Ok(Self { rig, hand, descriptor, regression, errors: None, subsets: None })
+    }
+
+    /// The same estimator, answering where some of the cameras are missing too.
+    pub(crate) fn with_subsets(self, regression: Option<SubsetRegression>) -> Result<Self> {
+        if let Some(regression) = &regression {
+            regression.check(&self.descriptor)?;
+        }
+        let subsets = regression.map(|regression| Subsets { regression, errors: Vec::new() });
+        Ok(Self { subsets, ..self })
+    }
+
+    /// The same estimator, knowing how its estimates from each learnt subset of the cameras err.
+    pub(crate) fn with_subset_errors(mut self, errors: Vec<ErrorModel>) -> Result<Self> {
+        let Some(subsets) = &mut self.subsets else { return Ok(self) };
+        if errors.is_empty() {
+            return Ok(self);
+        }
+        subsets.errors = errors;
+        let learnt = ViewSet::learnt(self.rig.cameras.len());
+        let errors = self.subsets.iter().flat_map(|subsets| &subsets.errors);
+        let found = errors.clone().count();
+        if found != learnt.len() {
+            let (part, expected) = ("errors of subsets", learnt.len());
+            return Err(Error::Mismatch { part, found, expected });
+        }
+        for (errors, subset) in errors.zip(learnt) {
+            self.check_errors(errors, subset.count())?;
+        }
+        Ok(self)
     }
 
     /// The same estimator, knowing how its estimates err.
@@ -93,6 +137,11 @@ impl Estimator {
     /// # Errors
     /// Errors of something other than poses, of another number of views, or of another framing.
     pub fn with_error_model(self, errors: ErrorModel) -> Result<Self> {
+        self.check_errors(&errors, self.rig.cameras.len())?;
+        Ok(Self { errors: Some(errors), ..self })
+    }
+
+    fn check_errors(&self, errors: &ErrorModel, views: usize) -> Result<()> {
         let placed = usize::from(self.framing() == Framing::Window);
         for (part, found, expected) in [
             ("numbers in its errors", errors.residuals.outputs(), Dof::COUNT),
@@ -102,9 +151,8 @@ impl Estimator {
                 return Err(Error::Mismatch { part, found, expected });
             }
         }
-        errors.usual.check(self.rig.cameras.len())?;
-        errors.placement.iter().try_for_each(PlacementErrors::check)?;
-        Ok(Self { errors: Some(errors), ..self })
+        errors.usual.check(views)?;
+        errors.placement.iter().try_for_each(PlacementErrors::check)
     }
 
     /// The cameras and the volume it was learnt for.
@@ -142,20 +190,71 @@ impl Estimator {
         self.errors.as_ref()
     }
 
-    /// Estimates the pose from one picture per camera, in the order of the rig's cameras.
+    /// What answers where some of the cameras are missing, if it was learnt.
+    pub(crate) fn subsets(&self) -> Option<&Subsets> {
+        self.subsets.as_ref()
+    }
+
+    /// Estimates the pose from the cameras' pictures, in the order of the rig. Pictures may be missing
+    /// (`None`), and a view in which no hand is found counts as missing too, which is a
+    /// [doubt](Cause::NotSeen); at least one must show the hand.
+    ///
+    /// Presets learn to answer any cameras, a rig of more than four those of the largest learnt subset: all,
+    /// all but one, two or one. By other regressors every camera's view is needed.
     ///
     /// # Errors
-    /// Another number of pictures, a picture of another shape than its camera's image, or no
-    /// hand in one.
-    pub fn estimate(
-        &self,
-        pictures: &[Picture<'_>],
-        workspace: &mut Workspace,
-    ) -> Result<Estimate> {
+    /// Another number of pictures, a picture of another shape than its camera's image, or no hand in any,
+    /// or in one that is needed.
+    pub fn estimate<'p, P>(&self, pictures: &[P], workspace: &mut Workspace) -> Result<Estimate>
+    where
+        P: Into<Option<Picture<'p>>> + Copy,
+    {
         self.check_count(pictures.len())?;
-        for (view, picture) in pictures.iter().enumerate() {
+        let pictures = pictures.iter().map(|&picture| picture.into()).enumerate();
+        let mut given: Vec<(usize, Picture<'p>)> =
+            pictures.filter_map(|(view, picture)| Some((view, picture?))).collect();
+        for &(view, picture) in &given {
             self.check_shape(view, picture.size())?;
         }
+        if given.is_empty() {
+            return Err(self.wrong_count(0));
+        }
+        let mut not_seen = Vec::new();
+        let mut first = None;
+        loop {
+            let error = match self.estimate_given(&given, workspace) {
+                Ok(mut estimate) => {
+                    estimate.doubts.extend(not_seen);
+                    estimate.doubts.sort_by_key(|doubt| doubt.view);
+                    return Ok(estimate);
+                }
+                Err(error) => error,
+            };
+            let Some(doubt) = self.not_seen(&error).filter(|_| self.subsets.is_some()) else {
+                return Err(error);
+            };
+            given.retain(|(view, _)| *view != doubt.view);
+            not_seen.push(doubt);
+            let error = first.get_or_insert(error);
+            if given.is_empty() {
+                return Err(std::mem::replace(error, Error::NoHand));
+            }
+        }
+    }
+
+    /// The doubt about a view for which an estimate failed, if that is because it shows no hand.
+    fn not_seen(&self, error: &Error) -> Option<ViewDoubt> {
+        let (camera, reason) = losses::not_seen(error)?;
+        let view = self.rig.cameras.iter().position(|known| known.name == camera)?;
+        Some(ViewDoubt { view, cause: Cause::NotSeen(reason) })
+    }
+
+    /// Estimates the pose from the pictures of some cameras, by their numbers.
+    fn estimate_given(
+        &self,
+        pictures: &[(usize, Picture<'_>)],
+        workspace: &mut Workspace,
+    ) -> Result<Estimate> {
         let observation = match self.framing() {
             Framing::Picture => self.see_whole(pictures, workspace)?,
             Framing::Window => self.see_through_windows(pictures, workspace)?,
@@ -166,46 +265,46 @@ impl Estimator {
     /// The silhouettes of whole pictures.
     fn see_whole(
         &self,
-        pictures: &[Picture<'_>],
+        pictures: &[(usize, Picture<'_>)],
         workspace: &mut Workspace,
     ) -> Result<Observation> {
         let describer = &mut workspace.description.describer;
-        let see = |(view, picture): (usize, &Picture<'_>)| {
+        let see = |&(camera, picture): &(usize, Picture<'_>)| {
             let mut silhouette = Silhouette::default();
             describer
-                .silhouette(*picture, &mut silhouette)
-                .map_err(|reason| Error::Silhouette { camera: self.camera(view), reason })?;
-            Ok(ObservedView { silhouette, window: None, picture: picture.size() })
+                .silhouette(picture, &mut silhouette)
+                .map_err(|reason| Error::Silhouette { camera: self.camera(camera), reason })?;
+            Ok(ObservedView { camera, silhouette, window: None, picture: picture.size() })
         };
-        let views = pictures.iter().enumerate().map(see).collect::<Result<_>>()?;
-        Ok(Observation { views })
+        Ok(Observation { views: pictures.iter().map(see).collect::<Result<_>>()? })
     }
 
     /// The silhouettes of the hand in windows of pictures.
     fn see_through_windows(
         &self,
-        pictures: &[Picture<'_>],
+        pictures: &[(usize, Picture<'_>)],
         workspace: &mut Workspace,
     ) -> Result<Observation> {
-        let masks = self.masks(pictures)?;
-        let windows = workspace.windows.find(&self.rig.cameras, &masks, None)?;
+        let mask = |&(camera, picture): &(usize, Picture<'_>)| {
+            let mask = picture.mask();
+            mask.map_err(|reason| Error::Silhouette { camera: self.camera(camera), reason })
+        };
+        let masks = pictures.iter().map(mask).collect::<Result<Vec<Mask>>>()?;
+        let cameras: Vec<Camera> =
+            pictures.iter().map(|(camera, _)| self.rig.cameras[*camera].clone()).collect();
+        let windows = workspace.windows.find(&cameras, &masks, None)?;
         let mut silhouettes = vec![Silhouette::default(); windows.len()];
         workspace.windows.silhouettes(&windows, &mut silhouettes)?;
         let views = silhouettes.into_iter().zip(windows).zip(pictures);
-        let view = |((silhouette, window), picture): ((_, _), &Picture<'_>)| ObservedView {
-            silhouette,
-            window: Some(window),
-            picture: picture.size(),
+        let view = |((silhouette, window), (camera, picture)): ((_, _), &(usize, Picture<'_>))| {
+            ObservedView {
+                camera: *camera,
+                silhouette,
+                window: Some(window),
+                picture: picture.size(),
+            }
         };
         Ok(Observation { views: views.map(view).collect() })
-    }
-
-    /// The raw masks of pictures, as large as they are.
-    fn masks(&self, pictures: &[Picture<'_>]) -> Result<Vec<Mask>> {
-        let mask = |(view, picture): (usize, &Picture<'_>)| {
-            picture.mask().map_err(|reason| Error::Silhouette { camera: self.camera(view), reason })
-        };
-        pictures.iter().enumerate().map(mask).collect()
     }
 
     /// Estimates the pose from one silhouette per camera, of any size, in the order of the rig's
@@ -219,47 +318,109 @@ impl Estimator {
         silhouettes: &[Silhouette],
         workspace: &mut Workspace,
     ) -> Result<Estimate> {
+        self.check_count(silhouettes.len())?;
         self.estimate_observation(Observation::of_silhouettes(silhouettes), workspace)
     }
 
-    /// Estimates the pose from what was seen already. Where the views have windows, these tell
-    /// position, θ_X and θ_Y, which what is seen through a window does not tell.
+    /// Estimates the pose from what was seen already, by some of the cameras. Where the views have windows,
+    /// these tell position, θ_X and θ_Y, which what is seen through a window does not tell.
     ///
     /// # Errors
-    /// Another number of views, a silhouette that cannot be described, or windows as of
-    /// [`initial_global`](crate::initial_global).
+    /// No view, or of cameras that were not [learnt](Self::estimate) to answer from, a silhouette that
+    /// cannot be described, or windows as of [`initial_global`](crate::initial_global).
     pub fn estimate_observation(
         &self,
         observation: Observation,
         workspace: &mut Workspace,
     ) -> Result<Estimate> {
-        self.check_count(observation.views.len())?;
+        let expert = self.expert(&observation)?;
+        self.describe(&observation, workspace)?;
+        let estimate = self.answer(expert, observation, workspace)?;
+        self.checked(&self.hand, estimate)
+    }
+
+    /// Describes what was seen, in the workspace.
+    pub(crate) fn describe(
+        &self,
+        observation: &Observation,
+        workspace: &mut Workspace,
+    ) -> Result<()> {
         let Workspace { description, x, .. } = workspace;
-        self.descriptor.describe(&self.rig, observation.silhouettes(), description, x)?;
-        let (pose, std) = self.regress(workspace)?;
+        let views = observation.views.iter().map(|view| (view.camera, &view.silhouette));
+        self.descriptor.describe(&self.rig, views, description, x)
+    }
+
+    /// An expert's answer to what was seen and is described in the workspace, unchecked.
+    pub(crate) fn answer(
+        &self,
+        expert: Expert<'_>,
+        observation: Observation,
+        workspace: &mut Workspace,
+    ) -> Result<Estimate> {
+        let (pose, std) = regress(expert, workspace)?;
         let joints = self.hand.pose(&pose, &self.rig.volume.rest_frame()).joints;
         let (overlaps, doubts) = (Vec::new(), Vec::new());
         let estimate = Estimate { pose, std, joints, observation, overlaps, doubts };
-        let estimate = match estimate.observation.framing() {
-            Framing::Picture => estimate,
-            Framing::Window => place(&self.rig, &self.hand, &self.placement_errors(), estimate)?,
-        };
-        self.checked(&self.hand, estimate)
+        match estimate.observation.framing() {
+            Framing::Picture => Ok(estimate),
+            Framing::Window => {
+                let learnt = expert.errors.and_then(|errors| errors.placement);
+                let errors =
+                    learnt.unwrap_or_else(|| PlacementErrors::of_anywhere(&self.rig.volume));
+                place(&self.rig, &self.hand, &errors, estimate)
+            }
+        }
+    }
+
+    /// What answers for the cameras of an observation.
+    pub(crate) fn expert(&self, observation: &Observation) -> Result<Expert<'_>> {
+        let cameras = self.rig.cameras.len();
+        let views = &observation.views;
+        let is_in_order = views.is_sorted_by(|one, next| one.camera < next.camera);
+        if !is_in_order || views.last().is_none_or(|last| last.camera >= cameras) {
+            return Err(self.wrong_count(views.len()));
+        }
+        if views.len() == cameras {
+            return Ok(Expert::of_all(&self.regression, cameras, self.errors.as_ref()));
+        }
+        self.subset_expert(observation.cameras()).ok_or_else(|| {
+            let missing = (0..cameras).find(|view| views.iter().all(|seen| seen.camera != *view));
+            Error::MissingCamera { camera: self.camera(missing.unwrap_or_default()) }
+        })
+    }
+
+    /// What answers for some cameras: for the largest learnt subset of them, of equal ones the first.
+    fn subset_expert(&self, seen: ViewSet) -> Option<Expert<'_>> {
+        let Subsets { regression, errors } = self.subsets.as_ref()?;
+        let cameras = self.rig.cameras.len();
+        let within = ViewSet::learnt(cameras).into_iter().enumerate();
+        let within = within.filter(|(_, subset)| subset.is_within(seen));
+        let largest = within.rev().max_by_key(|(_, subset)| subset.count())?;
+        Some(Expert::of_subset(regression, cameras, largest, errors.get(largest.0)))
     }
 
     /// An estimate of a hand with what it has in common with what was seen, and with the doubts that follow.
     pub(crate) fn checked(&self, hand: &HandShape, mut estimate: Estimate) -> Result<Estimate> {
-        let Estimate { pose, observation, .. } = &estimate;
         let mut short = Vec::new();
-        if observation.framing() == self.framing() {
-            let (cameras, rest) = (&self.rig.cameras, self.rig.volume.rest_frame());
-            estimate.overlaps = redraw::overlaps(cameras, hand, &rest, pose, observation)?;
-            if let Some(errors) = &self.errors {
-                short = errors.usual.short(&self.explanation(hand, &estimate)?);
+        if estimate.observation.framing() == self.framing() {
+            estimate.overlaps = self.overlaps(hand, &estimate)?;
+            let expert = self.expert(&estimate.observation)?;
+            if expert.errors.is_some() {
+                short = expert.short(&estimate.observation, &self.explanation(hand, &estimate)?);
             }
         }
-        estimate.doubts = doubts::of(&self.rig, &short, &estimate);
+        let mut doubts = doubts::of(&self.rig, &short, &estimate);
+        let is_not_seen = |doubt: &&ViewDoubt| matches!(doubt.cause, Cause::NotSeen(_));
+        doubts.extend(estimate.doubts.iter().filter(is_not_seen));
+        doubts.sort_by_key(|doubt| doubt.view);
+        estimate.doubts = doubts;
         Ok(estimate)
+    }
+
+    /// What an estimated hand and each view have in common.
+    pub(crate) fn overlaps(&self, hand: &HandShape, estimate: &Estimate) -> Result<Vec<f64>> {
+        let (cameras, rest) = (&self.rig.cameras, self.rig.volume.rest_frame());
+        redraw::overlaps(cameras, hand, &rest, &estimate.pose, &estimate.observation)
     }
 
     /// How well an estimate of a hand explains what was seen.
@@ -274,11 +435,6 @@ impl Estimator {
         Ok(Explanation { overlaps: overlaps.clone(), borders })
     }
 
-    fn placement_errors(&self) -> PlacementErrors {
-        let learnt = self.errors.as_ref().and_then(|errors| errors.placement);
-        learnt.unwrap_or_else(|| PlacementErrors::of_anywhere(&self.rig.volume))
-    }
-
     fn camera(&self, view: usize) -> String {
         self.rig.cameras[view].name.clone()
     }
@@ -288,7 +444,12 @@ impl Estimator {
         if found == cameras {
             return Ok(());
         }
-        Err(Error::PictureCount { cameras: (0..cameras).map(|v| self.camera(v)).collect(), found })
+        Err(self.wrong_count(found))
+    }
+
+    fn wrong_count(&self, found: usize) -> Error {
+        let cameras = (0..self.rig.cameras.len()).map(|view| self.camera(view)).collect();
+        Error::PictureCount { cameras, found }
     }
 
     /// The picture must be a scaled copy of the camera's image, to within a pixel.
@@ -301,20 +462,24 @@ impl Estimator {
         }
         Err(Error::PictureShape { camera: self.camera(view), found, expected })
     }
+}
 
-    fn regress(&self, workspace: &mut Workspace) -> Result<(Pose, [Option<f64>; Dof::COUNT])> {
-        let Workspace { x, regression, .. } = workspace;
-        let (mut pose, mut std) = (Pose::REST, [0.0; Dof::COUNT]);
-        self.regression.predict_into(x, regression, &mut pose.0, &mut std)?;
-        for dof in Dof::ALL {
-            let (value, std) = (pose[dof], std[dof.index()]);
-            if !value.is_finite() || std.is_nan() {
-                let value = if value.is_finite() { std } else { value };
-                return Err(Error::Overflow { dof: dof.name(), value });
-            }
+/// What an expert says of the descriptor in the workspace.
+fn regress(
+    expert: Expert<'_>,
+    workspace: &mut Workspace,
+) -> Result<(Pose, [Option<f64>; Dof::COUNT])> {
+    let Workspace { x, subsets, regression, .. } = workspace;
+    let (mut pose, mut std) = (Pose::REST, [0.0; Dof::COUNT]);
+    expert.predict_into(x, (subsets, regression), &mut pose.0, &mut std)?;
+    for dof in Dof::ALL {
+        let (value, std) = (pose[dof], std[dof.index()]);
+        if !value.is_finite() || std.is_nan() {
+            let value = if value.is_finite() { std } else { value };
+            return Err(Error::Overflow { dof: dof.name(), value });
         }
-        Ok((pose, std.map(known)))
     }
+    Ok((pose, std.map(known)))
 }
 
 /// A regressor's standard deviation, if it knows one: it is infinite, or 0 in the models of old, where

@@ -14,9 +14,10 @@ use crate::estimator::error_model::ErrorModel;
 use crate::estimator::estimate::Estimator;
 use crate::estimator::placement::PlacementErrors;
 use crate::estimator::regression::FittedRegressor;
+use crate::estimator::subset_regression::SubsetRegression;
 use crate::features::descriptor::Descriptor;
 
-const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 8 };
+const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 9 };
 
 /// What the payload holds.
 #[derive(Serialize, Deserialize)]
@@ -26,6 +27,14 @@ struct Payload<'a> {
     descriptor: Cow<'a, Descriptor>,
     regression: Stored<'a>,
     errors: Option<StoredErrors<'a>>,
+    subsets: Option<StoredSubsets<'a>>,
+}
+
+/// What answers where some of the cameras are missing.
+#[derive(Serialize, Deserialize)]
+struct StoredSubsets<'a> {
+    regression: Cow<'a, SubsetRegression>,
+    errors: Vec<StoredErrors<'a>>,
 }
 
 /// A model of errors in plain numbers.
@@ -36,7 +45,15 @@ struct StoredErrors<'a> {
     placement: Option<PlacementErrors>,
 }
 
-impl StoredErrors<'_> {
+impl<'a> StoredErrors<'a> {
+    fn of(errors: &'a ErrorModel) -> Self {
+        Self {
+            residuals: Cow::Borrowed(errors.residuals.parts()),
+            usual: Cow::Borrowed(&errors.usual),
+            placement: errors.placement,
+        }
+    }
+
     fn read(self) -> Result<ErrorModel> {
         Ok(ErrorModel {
             residuals: ResidualKde::from_parts(self.residuals.into_owned())?,
@@ -69,10 +86,10 @@ impl Estimator {
                 FittedRegressor::Projected(models) => Stored::Projected(Cow::Borrowed(models)),
                 FittedRegressor::Network(own) => Stored::Network(Cow::Borrowed(own)),
             },
-            errors: self.error_model().map(|errors| StoredErrors {
-                residuals: Cow::Borrowed(errors.residuals.parts()),
-                usual: Cow::Borrowed(&errors.usual),
-                placement: errors.placement,
+            errors: self.error_model().map(StoredErrors::of),
+            subsets: self.subsets().map(|subsets| StoredSubsets {
+                regression: Cow::Borrowed(&subsets.regression),
+                errors: subsets.errors.iter().map(StoredErrors::of).collect(),
             }),
         };
         MODEL.encode(&payload)
@@ -84,7 +101,7 @@ impl Estimator {
     /// Bytes that are no model, of another format, truncated, corrupt, or whose parts do not
     /// fit each other.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let Payload { rig, hand, descriptor, regression, errors } = MODEL.decode(bytes)?;
+        let Payload { rig, hand, descriptor, regression, errors, subsets } = MODEL.decode(bytes)?;
         let regression = match regression {
             Stored::Joint(parts) => Model::from_parts(parts.into_owned())?.into(),
             Stored::Projected(models) => FittedRegressor::Projected(models.into_owned()),
@@ -92,9 +109,12 @@ impl Estimator {
         };
         let (rig, hand) = (rig.into_owned(), hand.into_owned());
         let estimator = Self::from_parts(rig, hand, descriptor.into_owned(), regression)?;
-        match errors {
-            Some(errors) => estimator.with_error_model(errors.read()?),
-            None => Ok(estimator),
-        }
+        let estimator = match errors {
+            Some(errors) => estimator.with_error_model(errors.read()?)?,
+            None => estimator,
+        };
+        let Some(StoredSubsets { regression, errors }) = subsets else { return Ok(estimator) };
+        let errors = errors.into_iter().map(StoredErrors::read).collect::<Result<Vec<_>>>()?;
+        estimator.with_subsets(Some(regression.into_owned()))?.with_subset_errors(errors)
     }
 }

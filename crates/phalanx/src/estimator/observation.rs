@@ -6,18 +6,21 @@ use phalanx_segmentation::{Forearm, Silhouette};
 
 use crate::error::Result;
 use crate::features::describer::working_camera;
+use crate::view_set::ViewSet;
 use crate::window::{Framing, Window};
 
 /// What was seen of a hand, camera by camera in the order of the rig.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
-    /// One for each camera.
+    /// One for each camera that showed it.
     pub views: Vec<ObservedView>,
 }
 
 /// What one camera showed of a hand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObservedView {
+    /// The number of the camera in the rig.
+    pub camera: usize,
     /// The silhouette as it was described, at [`WORKING_SIZE`](crate::WORKING_SIZE) if it is of a
     /// picture.
     pub silhouette: Silhouette,
@@ -54,24 +57,26 @@ impl ObservedView {
 }
 
 impl Observation {
-    /// Silhouettes without pictures.
+    /// Silhouettes without pictures, one for each camera.
     pub fn of_silhouettes(silhouettes: &[Silhouette]) -> Self {
-        let view = |silhouette: &Silhouette| ObservedView {
+        let view = |(camera, silhouette): (usize, &Silhouette)| ObservedView {
+            camera,
             silhouette: silhouette.clone(),
             window: None,
             picture: silhouette.mask.dimensions(),
         };
-        Self { views: silhouettes.iter().map(view).collect() }
+        Self { views: silhouettes.iter().enumerate().map(view).collect() }
     }
 
-    /// Silhouettes that are seen in windows of pictures.
+    /// Silhouettes that are seen in windows of pictures, one for each camera.
     pub fn through_windows(silhouettes: &[Silhouette], windows: &[Window]) -> Self {
-        let view = |(silhouette, window): (&Silhouette, &Window)| ObservedView {
+        let view = |(camera, (silhouette, window)): (usize, (&Silhouette, &Window))| ObservedView {
+            camera,
             silhouette: silhouette.clone(),
             window: Some(window.clone()),
             picture: window.picture(),
         };
-        Self { views: silhouettes.iter().zip(windows).map(view).collect() }
+        Self { views: silhouettes.iter().zip(windows).enumerate().map(view).collect() }
     }
 
     /// How the pictures were looked at.
@@ -81,6 +86,17 @@ impl Observation {
         } else {
             Framing::Picture
         }
+    }
+
+    /// What is left of it where only some cameras look on.
+    pub(crate) fn seen_by(&self, cameras: ViewSet) -> Self {
+        let left = self.views.iter().filter(|view| cameras.contains(view.camera));
+        Self { views: left.cloned().collect() }
+    }
+
+    /// The cameras that showed the hand.
+    pub(crate) fn cameras(&self) -> ViewSet {
+        ViewSet::of(self.views.iter().map(|view| view.camera))
     }
 
     /// The silhouettes.

@@ -109,30 +109,35 @@ impl Descriptor {
         Ok(())
     }
 
-    /// Describes one silhouette per camera of the rig.
+    /// Describes the silhouettes of cameras, by their numbers in the rig. The part of a camera that is
+    /// missing is zero.
     pub(crate) fn describe<'a>(
         &self,
         rig: &Rig,
-        silhouettes: impl Iterator<Item = &'a Silhouette> + Clone,
+        silhouettes: impl Iterator<Item = (usize, &'a Silhouette)>,
         memory: &mut Memory,
         x: &mut Vec<f64>,
     ) -> Result<()> {
         let Memory { describer, contexts, coding } = memory;
         contexts.resize_with(self.views(), Vec::new);
-        let views = rig.cameras.iter().zip(silhouettes.clone()).zip(&mut *contexts);
-        for ((camera, silhouette), kept) in views {
-            let contexts = describer
-                .contexts(silhouette, self.view_config.orientation)
-                .map_err(|reason| Error::ShapeContext { camera: camera.name.clone(), reason })?;
-            kept.clear();
-            kept.extend_from_slice(contexts.values());
-        }
+        contexts.iter_mut().for_each(Vec::clear);
+        x.clear();
         x.resize(self.dim(), 0.0);
         let (codes, extra_features) = x.split_at_mut(self.codes.dim());
-        self.codes.describe(contexts, coding, codes)?;
-        for (silhouette, cells) in silhouettes.zip(extra_features.chunks_exact_mut(OCCUPANCY)) {
-            occupancy_into(&silhouette.mask, cells);
+        for (view, silhouette) in silhouettes {
+            let described = describer.contexts(silhouette, self.view_config.orientation);
+            let described = described.map_err(|reason| Error::ShapeContext {
+                camera: rig.cameras[view].name.clone(),
+                reason,
+            })?;
+            contexts[view].extend_from_slice(described.values());
+            let mut cells = extra_features.chunks_exact_mut(OCCUPANCY);
+            if let Some(cells) = cells.nth(view) {
+                occupancy_into(&silhouette.mask, cells);
+            }
         }
+        let seen = contexts.iter().map(|view| (!view.is_empty()).then_some(view.as_slice()));
+        self.codes.describe_some(&seen.collect::<Vec<_>>(), coding, codes)?;
         Ok(())
     }
 }
@@ -154,7 +159,7 @@ pub fn describe_scenes(
     let describe = |(drawing, memory): &mut (SceneDescriber, Memory), &pose: &usize| {
         let mut x = Vec::new();
         let described = drawing.see(&scenes.scene(pose)).and_then(|_| {
-            descriptor.describe(rig, drawing.seen(), memory, &mut x)?;
+            descriptor.describe(rig, drawing.seen().enumerate(), memory, &mut x)?;
             Ok(x)
         });
         progress.step();

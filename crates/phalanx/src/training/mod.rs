@@ -6,6 +6,8 @@ pub(crate) mod plan;
 pub(crate) mod preset;
 pub(crate) mod recipe;
 pub(crate) mod regressor;
+pub(crate) mod samples;
 pub(crate) mod shard;
 pub(crate) mod statistics;
+pub(crate) mod subsets;
 pub(crate) mod trainer;

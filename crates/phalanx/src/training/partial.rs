@@ -1,5 +1,7 @@
 //! Training on any number of scenes that stream by, all at once or in parts.
 
+use std::collections::BTreeMap;
+
 use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
 use serde::{Deserialize, Serialize};
@@ -15,10 +17,11 @@ use crate::synthesis::scene::SceneSource;
 use crate::training::maker::Maker;
 use crate::training::plan::{TrainingPlan, described_ones, targets_of};
 use crate::training::recipe::Training;
+use crate::training::samples::Samples;
 use crate::training::shard::{BLOCK, Shard, scenes_of};
 use crate::training::statistics::TrainingStatistics;
 
-const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 6 };
+const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 7 };
 
 /// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
 /// and to [`finish`](Self::finish) the estimator. For most regressors that is sums, whose size does
@@ -32,6 +35,8 @@ pub struct PartialTraining {
     blocks: Vec<usize>,
     losses: Losses,
     statistics: TrainingStatistics,
+    /// Components of some blocks of scenes, which the kernels of subsets of the cameras are fitted to.
+    components: BTreeMap<usize, Samples<f32>>,
     /// What the error model is fitted to, if there is to be one.
     errors: Option<ErrorScenes>,
     /// What made it, ascending.
@@ -92,6 +97,7 @@ impl Training {
             blocks: Vec::new(),
             losses: Losses::default(),
             statistics,
+            components: BTreeMap::new(),
             errors: None,
             makers: vec![Maker::here()],
         })
@@ -134,6 +140,10 @@ impl PartialTraining {
             let (kept, x) = described_ones(&numbers, described, &mut self.losses);
             if !kept.is_empty() {
                 let y = targets_of(scenes, &kept);
+                if let Some(components) = self.plan.subset_components(block, self.scenes) {
+                    let z = components.apply(x.as_ref())?;
+                    self.components.insert(block, Samples::new(&z, &y, |value| value as f32));
+                }
                 self.statistics.add(&self.plan, &columns, block, x, &y)?;
             }
             self.blocks.push(block);
@@ -170,6 +180,26 @@ impl PartialTraining {
         Ok(())
     }
 
+    /// Are there components of the blocks that they are kept of, and of no others?
+    fn check_components(&self) -> Result<()> {
+        let mut wrong = self.components.iter().filter(|(block, samples)| {
+            let components = self.plan.subset_components(**block, self.scenes);
+            let whole = components.and_then(|components| samples.count(components.outputs()));
+            whole.is_none() || self.blocks.binary_search(block).is_err()
+        });
+        match wrong.next() {
+            Some((&found, _)) => {
+                let expected = self.blocks.len();
+                Err(Error::Mismatch {
+                    part: "the number of a block of components",
+                    found,
+                    expected,
+                })
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Adds another part of the same training.
     ///
     /// # Errors
@@ -182,6 +212,7 @@ impl PartialTraining {
             return Err(Error::Overlap { first: both.start, last: both.end - 1 });
         }
         self.statistics.merge(other.statistics)?;
+        self.components.extend(other.components);
         self.blocks.extend(other.blocks);
         self.blocks.sort_unstable();
         self.losses.merge(other.losses);
@@ -238,9 +269,14 @@ impl PartialTraining {
         if self.losses.count() > 0 {
             progress.lost(&self.losses, self.scenes);
         }
-        let regression = self.statistics.fit(&self.plan, progress)?;
+        let (regression, subsets) = self.statistics.fit(&self.plan, progress)?;
+        let subsets = match subsets {
+            None => self.plan.fit_subsets(&Samples::of_blocks(self.components), progress)?,
+            some => some,
+        };
         let TrainingPlan { rig, hand, descriptor, .. } = self.plan;
-        let estimator = Estimator::from_parts(rig.clone(), hand.clone(), descriptor, regression)?;
+        let estimator = Estimator::from_parts(rig.clone(), hand.clone(), descriptor, regression)?
+            .with_subsets(subsets)?;
         match self.errors {
             Some(ErrorScenes { sampler, count }) => {
                 estimator.fit_error_model(&sampler.scenes(&rig, &hand, count), progress)
@@ -272,14 +308,13 @@ impl PartialTraining {
         let shown: usize = part.blocks.iter().map(|&b| scenes_of(b, part.scenes).len()).sum();
         let samples = shown.checked_sub(part.losses.count());
         part.statistics.check(&part.plan, &columns, &part.blocks, samples)?;
+        part.check_components()?;
         Ok(part)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use phalanx_hand::{Dof, Pose};
     use phalanx_rvm::{BlockPca, Ridge};
 

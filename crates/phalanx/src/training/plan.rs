@@ -24,12 +24,24 @@ pub(crate) struct TrainingPlan {
     pub(crate) hand: HandShape,
     pub(crate) descriptor: Descriptor,
     pub(crate) regressor: RegressorConfig,
+    pub(crate) answers_from: Cameras,
     pub(crate) transform: FeatureTransform,
     /// Scenes that scaling and Gaussian centres are taken from, and their x (as the regressor reads
     /// it) and y (28), one after the other.
     pub(crate) pilot: Vec<usize>,
     pub(crate) pilot_x: Vec<f64>,
     pilot_y: Vec<f64>,
+}
+
+/// Which cameras an estimator answers from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Cameras {
+    /// Any of the rig's, if it is learnt with a [`LearntMetric`](crate::LearntMetric) or a
+    /// [`NetworkTraining`](crate::NetworkTraining); else all. It is the same estimator of all.
+    #[default]
+    Any,
+    /// All of them, and no fewer. That is learnt in less time.
+    All,
 }
 
 /// What the regressor reads of a scene.
@@ -39,8 +51,8 @@ pub(crate) enum FeatureTransform {
     Whole,
     /// The descriptor's principal components.
     Components(BlockPca),
-    /// What learnt distances make of it.
-    Metric(LearnedMetric),
+    /// What learnt distances make of it. They were learnt between its principal components.
+    Metric { metric: LearnedMetric, components: BlockPca },
 }
 
 impl Training {
@@ -85,6 +97,7 @@ impl Training {
             hand: hand.clone(),
             descriptor,
             regressor: self.regressor.clone(),
+            answers_from: self.answers_from,
             transform,
             pilot_x: numbers(&x),
             pilot_y: numbers(&y),
@@ -99,7 +112,7 @@ impl FeatureTransform {
         Ok(match self {
             Self::Whole => x,
             Self::Components(components) => components.apply(x.as_ref())?,
-            Self::Metric(metric) => metric.projection.apply(x.as_ref())?,
+            Self::Metric { metric, .. } => metric.projection.apply(x.as_ref())?,
         })
     }
 
@@ -108,7 +121,7 @@ impl FeatureTransform {
         match self {
             Self::Whole => dim,
             Self::Components(components) => components.outputs(),
-            Self::Metric(metric) => metric.projection.outputs(),
+            Self::Metric { metric, .. } => metric.projection.outputs(),
         }
     }
 }
@@ -139,7 +152,7 @@ impl TrainingPlan {
             (regressor, FeatureTransform::Whole) if regressor.kept() != Kept::Sums => {
                 Ok(Vec::new())
             }
-            (RegressorConfig::LearntMetric(fitter), FeatureTransform::Metric(metric)) => {
+            (RegressorConfig::LearntMetric(fitter), FeatureTransform::Metric { metric, .. }) => {
                 let of_group = |group: usize| {
                     let y = metric.targets(group, y);
                     let x = metric.part(group, x);

@@ -8,6 +8,7 @@ use phalanx_rvm::{
 };
 
 use crate::features::describer::OrientationRule;
+use crate::training::plan::Cameras;
 use crate::training::recipe::{Encoding, Training};
 use crate::training::regressor::{LearntMetric, NetworkTraining, RegressorConfig};
 use crate::window::Framing;
@@ -72,6 +73,7 @@ impl Preset {
             },
             encoding: Encoding::Vlad,
             regressor,
+            answers_from: Cameras::default(),
         }
     }
 }

@@ -14,6 +14,7 @@ use crate::features::descriptor::{Descriptor, ExtraFeatures};
 use crate::progress::Progress;
 use crate::synthesis::scene::FixedPoses;
 use crate::synthesis::scene_describer::PoseContexts;
+use crate::training::plan::Cameras;
 use crate::training::regressor::RegressorConfig;
 use crate::training::shard::Shard;
 use crate::window::Framing;
@@ -36,6 +37,8 @@ pub struct Training {
     pub encoding: Encoding,
     /// The regressor.
     pub regressor: RegressorConfig,
+    /// Whether cameras may be missing.
+    pub answers_from: Cameras,
 }
 
 /// What of the silhouettes is described.
@@ -59,6 +62,7 @@ impl Default for Training {
                 bandwidth: Bandwidth::Relative(0.5),
                 regularisation: Regularisation::Fixed(0.01),
             }),
+            answers_from: Cameras::default(),
         }
     }
 }

@@ -2,17 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use faer::{Mat, MatRef};
-use phalanx_hand::Dof;
+use faer::Mat;
 use phalanx_rvm::{BasisSpec, GroupedRegressor, SufficientStatistics};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::estimator::regression::FittedRegressor;
+use crate::estimator::subset_regression::SubsetRegression;
 use crate::progress::Progress;
 use crate::training::plan::{FeatureTransform, TrainingPlan};
 use crate::training::regressor::Kept;
+use crate::training::samples::Samples;
 
 /// Enough of the scenes to fit the regressor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,62 +24,6 @@ pub(crate) enum TrainingStatistics {
     Samples(BTreeMap<usize, Samples<f32>>),
     /// The whole descriptor of each sample, likewise.
     Descriptors(BTreeMap<usize, Samples<f64>>),
-}
-
-/// Some samples, one after the other.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Samples<T> {
-    /// What is kept of each.
-    x: Vec<T>,
-    /// Poses, 28 numbers each.
-    y: Vec<f64>,
-}
-
-impl<T> Samples<T> {
-    fn new(z: &Mat<f64>, y: &Mat<f64>, number: impl Fn(f64) -> T) -> Self {
-        let number = &number;
-        let x = z.col_iter().flat_map(|column| column.iter().map(|&value| number(value)));
-        let y = y.col_iter().flat_map(|column| column.iter().copied());
-        Self { x: x.collect(), y: y.collect() }
-    }
-
-    /// All samples of some blocks, one after the other.
-    fn of_blocks(blocks: BTreeMap<usize, Self>) -> Self {
-        let count = |length: fn(&Self) -> usize| blocks.values().map(length).sum();
-        let mut x = Vec::with_capacity(count(|samples| samples.x.len()));
-        let mut y = Vec::with_capacity(count(|samples| samples.y.len()));
-        for mut samples in blocks.into_values() {
-            x.append(&mut samples.x);
-            y.append(&mut samples.y);
-        }
-        Self { x, y }
-    }
-
-    /// Refuses blocks that are not held, or not of so many samples.
-    fn check(
-        blocks: &BTreeMap<usize, Self>,
-        read: usize,
-        held: &[usize],
-        samples: Option<usize>,
-    ) -> Result<()> {
-        let foreign = |part, found, expected| Err(Error::Mismatch { part, found, expected });
-        if let Some(&block) = blocks.keys().find(|block| held.binary_search(block).is_err()) {
-            return foreign("the number of a block of samples", block, held.len());
-        }
-        let found = blocks.values().map(|samples| samples.count(read)).sum::<Option<usize>>();
-        if found == samples {
-            return Ok(());
-        }
-        foreign("samples", found.unwrap_or(0), samples.unwrap_or(0))
-    }
-
-    /// How many there are, if they are whole.
-    fn count(&self, read: usize) -> Option<usize> {
-        let count = self.y.len() / Dof::COUNT;
-        let whole =
-            self.y.len() == count * Dof::COUNT && Some(self.x.len()) == count.checked_mul(read);
-        whole.then_some(count)
-    }
 }
 
 impl TrainingStatistics {
@@ -108,7 +53,7 @@ impl TrainingStatistics {
             (Self::Descriptors(blocks), _) => {
                 blocks.insert(block, Samples::new(&z, y, |value| value));
             }
-            (Self::Sums(sums), FeatureTransform::Metric(metric)) => {
+            (Self::Sums(sums), FeatureTransform::Metric { metric, .. }) => {
                 for (group, (sums, columns)) in sums.iter_mut().zip(columns).enumerate() {
                     let y = metric.targets(group, y.as_ref());
                     sums.add(columns, metric.part(group, z.as_ref()), y.as_ref())?;
@@ -171,37 +116,40 @@ impl TrainingStatistics {
         }
     }
 
-    /// The regression that all scenes amount to.
+    /// The regression that all scenes amount to; of a network those of the cameras' subsets too.
     pub(crate) fn fit(
         self,
         plan: &TrainingPlan,
         progress: &dyn Progress,
-    ) -> Result<FittedRegressor> {
-        match self {
+    ) -> Result<(FittedRegressor, Option<SubsetRegression>)> {
+        let regression = match self {
             Self::Sums(sums) => {
                 progress.begin("fit the regressor", 1);
                 let regression = fit_sums(&sums, plan)?;
                 progress.step();
-                Ok(regression)
+                regression
             }
             Self::Samples(blocks) => {
-                let Samples { x, y } = Samples::of_blocks(blocks);
-                let count = y.len() / Dof::COUNT;
-                let x = MatRef::from_column_major_slice(&x, plan.read(), count);
-                let y = MatRef::from_column_major_slice(&y, Dof::COUNT, count);
-                plan.regressor.fit_samples(&plan.transform, x, y, progress)
+                let samples = Samples::of_blocks(blocks);
+                let columns = samples.columns(plan.read());
+                let missing = plan.missing_views();
+                return plan.regressor.fit_samples(
+                    &plan.transform,
+                    columns,
+                    missing.as_ref(),
+                    progress,
+                );
             }
             Self::Descriptors(blocks) => {
                 progress.begin("fit the regressor", 1);
-                let Samples { x, y } = Samples::of_blocks(blocks);
-                let count = y.len() / Dof::COUNT;
-                let x = MatRef::from_column_major_slice(&x, plan.read(), count).to_owned();
-                let y = MatRef::from_column_major_slice(&y, Dof::COUNT, count).to_owned();
-                let fit = plan.regressor.fit(&x, &y)?;
+                let samples = Samples::of_blocks(blocks);
+                let (x, y) = samples.columns(plan.read());
+                let fit = plan.regressor.fit(&x.to_owned(), &y.to_owned())?;
                 progress.step();
-                Ok(fit.model.into())
+                fit.model.into()
             }
-        }
+        };
+        Ok((regression, None))
     }
 }
 
@@ -213,7 +161,7 @@ fn fit_sums(sums: &[SufficientStatistics], plan: &TrainingPlan) -> Result<Fitted
     };
     let mut models = work.par_iter().map(fit).collect::<Result<Vec<_>>>()?;
     Ok(match &plan.transform {
-        FeatureTransform::Metric(metric) => {
+        FeatureTransform::Metric { metric, .. } => {
             GroupedRegressor::from_parts(metric.clone(), models)?.into()
         }
         _ => models.remove(0).into(),

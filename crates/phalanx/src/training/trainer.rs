@@ -9,6 +9,7 @@ use crate::progress::Progress;
 use crate::synthesis::augmentation::Augmentation;
 use crate::synthesis::sampler::{PoseSource, SceneSampler};
 use crate::training::partial::{ErrorScenes, PartialTraining};
+use crate::training::plan::Cameras;
 use crate::training::preset::Preset;
 use crate::training::recipe::Training;
 use crate::training::shard::Shard;
@@ -72,6 +73,13 @@ impl Trainer {
     #[must_use]
     pub fn framing(mut self, framing: Framing) -> Self {
         self.training.framing = framing;
+        self
+    }
+
+    /// Which cameras it answers from: any of the rig's by default.
+    #[must_use]
+    pub fn answers_from(mut self, cameras: Cameras) -> Self {
+        self.training.answers_from = cameras;
         self
     }
 

@@ -56,7 +56,7 @@ fn refined_poses_stand_for_all_that_came_out() {
         let pictures: Vec<_> = masks.iter().map(Picture::Mask).collect();
         let estimate = LEARNT.estimate(&pictures, &mut workspace).unwrap();
         let evidence = refiner.evidence_of(&estimate.observation).unwrap();
-        let mut starts = LEARNT.hypotheses(&estimate, refiner.starts()).unwrap();
+        let mut starts = LEARNT.hypotheses(&estimate, Refiner::starts(1)).unwrap();
         assert!(starts.len() > Refiner::POSES);
         let poses: Vec<Pose> = (refiner.refine_hypotheses(&evidence, &estimate, &starts).unwrap())
             .into_iter()

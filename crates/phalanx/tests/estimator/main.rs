@@ -14,5 +14,6 @@ mod property;
 mod refusals;
 mod roads;
 mod shards;
+mod subsets;
 mod training;
 mod working_size;
