@@ -9,4 +9,5 @@ pub(crate) mod orientation;
 pub(crate) mod presets;
 pub(crate) mod refining;
 pub(crate) mod selection;
+pub(crate) mod subsets;
 pub(crate) mod table1;

@@ -1,0 +1,272 @@
+//! `cargo xtask eval-subsets`: one model that answers any of its cameras, beside one for just these; writes
+//! docs/results/subsets.md.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use clap::{Args, ValueEnum};
+use comfy_table::{Table, presets};
+use phalanx::{
+    Cameras, Estimate, Mask, OrientationRule, Picture, Progress, SceneDescriber, SceneSource,
+    Trainer, Workspace,
+};
+use phalanx_camera::Rig;
+use phalanx_hand::{Dof, HandShape, Pose};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::clock::timed;
+use crate::data::sets::{self, Test};
+use crate::eval::held_out::errors::{active_angles, mean_error_deg};
+use crate::files;
+use crate::page::Page;
+use crate::progress;
+use crate::recipes::preset_name::PresetName;
+
+const TESTS: [Test; 2] = [Test::Unseen, Test::All];
+/// How many standard deviations hold these shares of a normal distribution.
+const PROMISED: [f64; 2] = [1.0, 1.96];
+
+#[derive(Args)]
+pub struct Arguments {
+    /// The presets that are learnt by, separated by commas.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "fast")]
+    presets: Vec<PresetName>,
+    /// How many scenes are learnt from; as many as each preset asks for by default.
+    #[arg(long, value_name = "N", value_parser = sets::samples)]
+    samples: Option<usize>,
+    /// Write the figures as JSON, too.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// Some of the cameras on one test.
+#[derive(Serialize)]
+struct Row {
+    preset: String,
+    test: &'static str,
+    cameras: String,
+    /// Of the model of any cameras, and of one for these alone.
+    any: Score,
+    own: Score,
+}
+
+/// How estimates of a test do.
+#[derive(Serialize)]
+struct Score {
+    /// Mean absolute error over the active angles, degrees.
+    error_deg: f64,
+    /// Mean standard deviation of the active angles, degrees.
+    std_deg: f64,
+    /// The shares of angles within the deviations that should hold 68 % and 95 %.
+    within: [f64; 2],
+}
+
+/// What learning takes.
+#[derive(Serialize)]
+struct Cost {
+    preset: String,
+    /// CPU seconds to learn to answer from all cameras, and from any.
+    all_s: f64,
+    any_s: f64,
+    all_bytes: usize,
+    any_bytes: usize,
+}
+
+/// What was measured.
+#[derive(Default, Serialize)]
+struct Figures {
+    costs: Vec<Cost>,
+    rows: Vec<Row>,
+}
+
+/// Writes the page and prints it.
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let rig = files::rig(None)?;
+    let bar = progress::Bar::new();
+    let mut figures = Figures::default();
+    for preset in &arguments.presets {
+        measure(*preset, arguments.samples, &rig, &mut figures, &bar)?;
+    }
+    drop(bar);
+    if let Some(path) = &arguments.json {
+        files::write_whole(path, serde_json::to_string_pretty(&figures)?.as_bytes())?;
+    }
+    let names: Vec<String> = figures.costs.iter().map(|cost| cost.preset.clone()).collect();
+    let samples = arguments.samples.map_or_else(String::new, |n| format!(" --samples {n}"));
+    let command = format!("cargo xtask eval-subsets --presets {}{samples}", names.join(","));
+    let title = "Some of the cameras";
+    Page { file: "subsets.md", command: &command, title }.publish(&body(&figures)?)
+}
+
+/// Learns by a preset from all cameras and from each subset alone, and tests both.
+fn measure(
+    name: PresetName,
+    samples: Option<usize>,
+    rig: &Rig,
+    figures: &mut Figures,
+    progress: &dyn Progress,
+) -> Result<()> {
+    let hand = files::hand(None)?;
+    let preset =
+        name.to_possible_value().context("presets can be asked for")?.get_name().to_owned();
+    let samples = samples.unwrap_or(name.preset().scenes());
+    let learn = |rig: &Rig, cameras: Cameras| {
+        let trainer = Trainer::preset(name.preset()).samples(samples).answers_from(cameras);
+        timed(|| trainer.fit(rig, &hand, progress))
+    };
+    let (any_s, any) = learn(rig, Cameras::Any)?;
+    let (all_s, all) = learn(rig, Cameras::All)?;
+    figures.costs.push(Cost {
+        preset: preset.clone(),
+        all_s,
+        any_s,
+        all_bytes: all.to_bytes()?.len(),
+        any_bytes: any.to_bytes()?.len(),
+    });
+    for views in subsets(rig.cameras.len()) {
+        let names: Vec<&str> = views.iter().map(|&view| rig.cameras[view].name.as_str()).collect();
+        let own_rig = rig.select(&names)?;
+        let own = if views.len() == rig.cameras.len() {
+            all.clone()
+        } else {
+            learn(&own_rig, Cameras::All)?.1
+        };
+        for test in TESTS {
+            let seen = Seen::of(test, rig, &hand, progress)?;
+            figures.rows.push(Row {
+                preset: preset.clone(),
+                test: test.name(),
+                cameras: names.join(", "),
+                any: seen.score(|masks, workspace| {
+                    let picture = |view: usize| views.contains(&view).then_some(&masks[view]);
+                    let pictures: Vec<Option<Picture<'_>>> =
+                        (0..masks.len()).map(|view| picture(view).map(Picture::Mask)).collect();
+                    any.estimate(&pictures, workspace)
+                })?,
+                own: seen.score(|masks, workspace| {
+                    let pictures: Vec<Picture<'_>> =
+                        views.iter().map(|&view| Picture::Mask(&masks[view])).collect();
+                    own.estimate(&pictures, workspace)
+                })?,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// All subsets of so many cameras, the smaller ones first.
+fn subsets(cameras: usize) -> Vec<Vec<usize>> {
+    let of = |bits: usize| (0..cameras).filter(|view| bits >> view & 1 == 1).collect();
+    let mut subsets: Vec<Vec<usize>> = (1..1 << cameras).map(of).collect();
+    subsets.sort_by_key(Vec::len);
+    subsets
+}
+
+/// A test as all cameras see it.
+struct Seen {
+    scenes: Vec<(Pose, Vec<Mask>)>,
+}
+
+impl Seen {
+    /// The scenes that every camera shows.
+    fn of(test: Test, rig: &Rig, hand: &HandShape, progress: &dyn Progress) -> Result<Self> {
+        let set = test.set(rig, hand, &[]);
+        let describer = SceneDescriber::new(rig, OrientationRule::default())?;
+        progress.begin(set.name, set.count());
+        let see = |describer: &mut SceneDescriber, number: usize| {
+            let scene = set.scene(number);
+            progress.step();
+            drop(describer.silhouettes(&scene).ok()?);
+            let masks = describer.masks(&scene).ok()?.to_vec();
+            Some((scene.pose, masks))
+        };
+        let numbers = (0..set.count()).into_par_iter().map_init(|| describer.clone(), see);
+        Ok(Self { scenes: numbers.flatten().collect() })
+    }
+
+    fn score(
+        &self,
+        estimate: impl Fn(&[Mask], &mut Workspace) -> phalanx::Result<Estimate> + Sync,
+    ) -> Result<Score> {
+        let angles = active_angles();
+        let one = |workspace: &mut Workspace, (truth, masks): &(Pose, Vec<Mask>)| {
+            let Estimate { pose, std, .. } = estimate(masks, workspace)?;
+            let std = |dof: Dof| std[dof.index()].unwrap_or_default();
+            let off = |dof: Dof| (pose[dof] - truth[dof]).abs();
+            let share = |deviations: f64| {
+                let within = angles.iter().filter(|&&dof| off(dof) <= deviations * std(dof));
+                within.count() as f64 / angles.len() as f64
+            };
+            let mean_std = angles.iter().map(|&dof| std(dof)).sum::<f64>() / angles.len() as f64;
+            let [one, two] = PROMISED.map(share);
+            Ok([mean_error_deg(&pose, truth), mean_std.to_degrees(), one, two])
+        };
+        let each = self.scenes.par_iter().map_init(Workspace::default, one);
+        let each = each.collect::<phalanx::Result<Vec<[f64; 4]>>>()?;
+        let mean = |k: usize| each.iter().map(|all| all[k]).sum::<f64>() / each.len() as f64;
+        Ok(Score { error_deg: mean(0), std_deg: mean(1), within: [mean(2), mean(3)] })
+    }
+}
+
+fn body(figures: &Figures) -> Result<String> {
+    let mut text = String::from(
+        "One model is learnt from all cameras of the desk and asked about some of them, beside a model that is learnt\n\
+         from just these (`own`), by the same preset from as many scenes. Errors and standard deviations are means over\n\
+         the 21 active angles, degrees; 68 % and 95 % are the shares of angles within as many deviations as should hold\n\
+         so many.\n",
+    );
+    for Cost { preset, all_s, any_s, all_bytes, any_bytes } in &figures.costs {
+        write!(
+            text,
+            "\n## {preset}\n\nTo learn any cameras takes {:.2} of the time of all alone ({any_s:.0} s and {all_s:.0} s \
+             of one core), and the file {:.1} MiB in place of {:.1} MiB.\n",
+            any_s / all_s,
+            mebibytes(*any_bytes),
+            mebibytes(*all_bytes)
+        )?;
+        for test in TESTS {
+            let rows = figures.rows.iter();
+            let rows = rows.filter(|row| row.preset == *preset && row.test == test.name());
+            write!(text, "\n`{}`:\n\n{}\n", test.name(), table(rows))?;
+        }
+    }
+    Ok(text)
+}
+
+fn table<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN).set_header([
+        "cameras",
+        "error",
+        "own",
+        "ratio",
+        "deviation",
+        "own",
+        "68 %",
+        "own",
+        "95 %",
+        "own",
+    ]);
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    for Row { cameras, any, own, .. } in rows {
+        table.add_row([
+            cameras.clone(),
+            format!("{:.2}", any.error_deg),
+            format!("{:.2}", own.error_deg),
+            format!("{:.2}", any.error_deg / own.error_deg),
+            format!("{:.2}", any.std_deg),
+            format!("{:.2}", own.std_deg),
+            percent(any.within[0]),
+            percent(own.within[0]),
+            percent(any.within[1]),
+            percent(own.within[1]),
+        ]);
+    }
+    table
+}
+
+fn mebibytes(bytes: usize) -> f64 {
+    bytes as f64 / f64::from(1 << 20)
+}
