@@ -3,6 +3,7 @@
 use anyhow::Result;
 use phalanx::{Missing, NoProgress, TakeFit, TakeSettings, fit_take};
 use phalanx_camera::{Camera, Rig};
+use phalanx_hand::Side;
 
 use super::finding::Finding;
 use crate::recording::source::{RecordingArguments, Source};
@@ -17,7 +18,7 @@ pub(super) fn findings(rig: &Rig, recording: &RecordingArguments) -> Vec<Finding
 }
 
 fn seen(rig: &Rig, recording: &RecordingArguments) -> Result<Vec<Finding>> {
-    let source = Source::new(rig, recording)?;
+    let source = Source::new(rig, recording, Side::Right)?;
     let mut reader = source.reader()?;
     let cameras = source.cameras.len();
     let mut findings = vec![Finding::good(

@@ -29,10 +29,10 @@ pub(super) struct Still {
 pub(super) fn stills(cameras: &[Camera], given: &[PathBuf]) -> Result<Vec<Still>> {
     let texts: Vec<String> = given.iter().map(|path| path.display().to_string()).collect();
     if given.iter().all(|path| path.is_dir()) {
-        return in_folders(&assign(cameras, &texts)?);
+        return in_folders(&assign(cameras, &texts, "pictures")?);
     }
     if texts.iter().any(|text| named(cameras, text).is_some()) {
-        let paths = assign(cameras, &texts)?;
+        let paths = assign(cameras, &texts, "pictures")?;
         if paths.iter().flatten().all(|path| path.is_dir()) {
             return in_folders(&paths);
         }

@@ -5,11 +5,16 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use phalanx_camera::Camera;
 
-/// The recording of each camera of a rig, in its order; `None` for a camera that has none.
+/// The recording, or what else `things` are, of each camera of a rig, in its order; `None` for a camera that
+/// has none.
 ///
 /// # Errors
 /// More recordings than cameras, a name that no camera has, two recordings of one camera.
-pub(crate) fn assign(cameras: &[Camera], recordings: &[String]) -> Result<Vec<Option<PathBuf>>> {
+pub(crate) fn assign(
+    cameras: &[Camera],
+    recordings: &[String],
+    things: &str,
+) -> Result<Vec<Option<PathBuf>>> {
     if let [folder] = recordings
         && cameras.len() > 1
         && let Some(found) = folders_of(cameras, Path::new(folder))
@@ -19,7 +24,7 @@ pub(crate) fn assign(cameras: &[Camera], recordings: &[String]) -> Result<Vec<Op
     let names = || cameras.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>().join(", ");
     ensure!(
         recordings.len() <= cameras.len(),
-        "{} recordings for the {} cameras of the rig ({})",
+        "{} {things} for the {} cameras of the rig ({})",
         recordings.len(),
         cameras.len(),
         names()
@@ -28,7 +33,7 @@ pub(crate) fn assign(cameras: &[Camera], recordings: &[String]) -> Result<Vec<Op
     let is_named = recordings.iter().all(|recording| named(cameras, recording).is_some());
     ensure!(
         is_named || recordings.len() == cameras.len(),
-        "{} recordings for {} cameras: name them, such as {}=PATH; the cameras are {}",
+        "{} {things} for {} cameras: name them, such as {}=PATH; the cameras are {}",
         recordings.len(),
         cameras.len(),
         cameras[0].name,
@@ -77,7 +82,7 @@ mod tests {
 
     fn assigned(recordings: &[&str]) -> Result<Vec<Option<PathBuf>>> {
         let recordings: Vec<String> = recordings.iter().map(|&text| text.to_owned()).collect();
-        assign(&cameras(), &recordings)
+        assign(&cameras(), &recordings, "recordings")
     }
 
     #[test]

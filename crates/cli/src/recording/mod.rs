@@ -2,6 +2,7 @@
 
 pub(crate) mod assign;
 mod ffmpeg;
+pub(crate) mod landmarks;
 mod mp4;
 pub(crate) mod pictures;
 pub(crate) mod reader;

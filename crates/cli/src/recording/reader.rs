@@ -1,4 +1,4 @@
-//! The masks of a recording's moments, one after the other.
+//! The masks and landmarks of a recording's moments, one after the other.
 
 use std::borrow::Cow;
 use std::path::PathBuf;
@@ -7,7 +7,10 @@ use anyhow::{Result, ensure};
 use image::DynamicImage;
 use phalanx::{Mask, TakeFrame};
 use phalanx_camera::Camera;
+use phalanx_hand::Landmarks;
+use phalanx_io::landmarks::LandmarkTrack;
 
+use super::landmarks::{LandmarkRecording, of_frames};
 use super::timeline::{Moment, Timeline};
 use super::{Recording, Stamp};
 use crate::segment::Pictures;
@@ -15,24 +18,33 @@ use crate::segment::Pictures;
 /// Reads what all cameras recorded.
 pub(crate) struct Reader<'a> {
     cameras: &'a [Camera],
-    paths: &'a [PathBuf],
+    paths: &'a [Option<PathBuf>],
+    tracks: &'a [Option<LandmarkTrack>],
     recordings: Vec<Box<dyn Recording>>,
+    /// What a detector saw in each camera's frames, of those that have landmarks.
+    landmarks: Vec<Option<Vec<Option<Landmarks>>>>,
     pictures: &'a Pictures,
     pub(crate) timeline: Timeline,
 }
 
 impl<'a> Reader<'a> {
-    /// Opens the recordings of cameras. `times` are the cameras' frame times, where they were written apart.
+    /// Opens the recordings of cameras, and what a detector saw in them. `times` are the cameras' frame times, where they were written apart.
     ///
     /// # Errors
-    /// A recording that cannot be opened, another number of times than frames, nothing to match frames by.
+    /// A recording that cannot be opened, another number of times than frames, landmarks of other frames,
+    /// nothing to match frames by.
     pub(crate) fn open(
         cameras: &'a [Camera],
-        paths: &'a [PathBuf],
+        (paths, tracks): (&'a [Option<PathBuf>], &'a [Option<LandmarkTrack>]),
         times: &[Option<Vec<f64>>],
         pictures: &'a Pictures,
     ) -> Result<Self> {
-        let recordings = opened(paths)?;
+        let recordings = opened(paths, tracks)?;
+        let mut landmarks = Vec::new();
+        for ((recording, camera), track) in recordings.iter().zip(cameras).zip(tracks) {
+            let of_frames = |track| of_frames(track, recording.stamps(), camera);
+            landmarks.push(track.as_ref().map(of_frames).transpose()?);
+        }
         let mut stamps: Vec<Cow<'_, [Stamp]>> = Vec::new();
         for ((recording, camera), times) in recordings.iter().zip(cameras).zip(times) {
             stamps.push(with_times(recording.stamps(), camera, times.as_deref())?);
@@ -46,14 +58,14 @@ impl<'a> Reader<'a> {
             "no two cameras have a frame of one moment: give pictures of one moment the same name in every \
              folder, or a timestamps file"
         );
-        Ok(Self { cameras, paths, recordings, pictures, timeline })
+        Ok(Self { cameras, paths, tracks, recordings, landmarks, pictures, timeline })
     }
 
     /// Goes back to the beginning.
     pub(crate) fn rewind(&mut self) -> Result<()> {
         // Never are two lists of all frames held.
         self.recordings.clear();
-        self.recordings = opened(self.paths)?;
+        self.recordings = opened(self.paths, self.tracks)?;
         Ok(())
     }
 
@@ -73,12 +85,18 @@ impl<'a> Reader<'a> {
 
     /// Reads a moment that comes after the last one read; what cannot be read is noted and missing.
     pub(crate) fn read_noting(&mut self, moment: usize, failures: &mut Vec<String>) -> TakeFrame {
-        let mut masks = Vec::new();
+        let (mut masks, mut landmarks) = (Vec::new(), Vec::new());
         for (view, recording) in self.recordings.iter_mut().enumerate() {
             let Some(frame) = self.timeline.moments[moment].frames[view] else {
                 masks.push(None);
+                landmarks.push(None);
                 continue;
             };
+            landmarks.push(self.landmarks[view].as_ref().and_then(|points| points[frame]));
+            if self.paths[view].is_none() {
+                masks.push(None);
+                continue;
+            }
             let camera = &self.cameras[view];
             let read = recording.read(frame);
             let mask = read.and_then(|picture| mask(&picture, camera, self.pictures));
@@ -88,12 +106,30 @@ impl<'a> Reader<'a> {
             };
             masks.push(mask.map_err(named).ok());
         }
-        TakeFrame::of_masks(masks)
+        if self.tracks.iter().all(Option::is_none) {
+            landmarks.clear();
+        }
+        TakeFrame { masks, landmarks }
     }
 }
 
-fn opened(paths: &[PathBuf]) -> Result<Vec<Box<dyn Recording>>> {
-    paths.iter().map(|path| super::open(path)).collect()
+/// The cameras' recordings; of one that has landmarks alone, these.
+fn opened(
+    paths: &[Option<PathBuf>],
+    tracks: &[Option<LandmarkTrack>],
+) -> Result<Vec<Box<dyn Recording>>> {
+    let mut recordings: Vec<Option<Box<dyn Recording>>> = paths
+        .iter()
+        .map(|path| path.as_ref().map(|path| super::open(path)).transpose())
+        .collect::<Result<_>>()?;
+    let first = recordings.iter().flatten().next();
+    let like = first.map_or_else(Vec::new, |recording| recording.stamps().to_vec());
+    for (recording, track) in recordings.iter_mut().zip(tracks) {
+        if let (None, Some(track)) = (&recording, track) {
+            *recording = Some(Box::new(LandmarkRecording::new(track, &like)));
+        }
+    }
+    Ok(recordings.into_iter().flatten().collect())
 }
 
 fn with_times<'a>(

@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let rig = check::read(&arguments.rig)?;
-    let source = Source::new(&rig, &arguments.recording)?;
+    let source = Source::new(&rig, &arguments.recording, arguments.side.into())?;
     let inputs: Vec<&PathBuf> = source.inputs().chain([&arguments.rig]).collect();
     let out = Output::new(&arguments.out, &inputs)?;
     let mut failures = Vec::new();

@@ -6,10 +6,12 @@ use std::path::Path;
 use std::time::UNIX_EPOCH;
 
 use anyhow::{Context, Result};
+use clap::ValueEnum;
 use phalanx::Maker;
 use serde::{Deserialize, Serialize};
 
 use super::arguments::Arguments;
+use crate::recording::landmarks::is_frame;
 use crate::recording::pictures::is_picture;
 use crate::recording::source::Source;
 
@@ -23,43 +25,59 @@ pub(super) struct Identity(Vec<(String, String)>);
 
 impl Identity {
     pub(super) fn of(arguments: &Arguments, source: &Source) -> Result<Self> {
-        let segment = &arguments.recording.segment;
-        let segmented = Some(segment.given().trim().to_owned()).filter(|given| !given.is_empty());
-        let together = arguments.fit_together.to_string();
-        let together = if arguments.whole_take { "all".to_owned() } else { together };
-        let settings = [
-            ("the program", Some(Maker::here().to_string())),
-            ("the kind of output", Some(format!("{:?}", arguments.kind()?))),
-            ("--side", Some(format!("{:?}", arguments.side).to_lowercase())),
-            ("--rate", arguments.rate.map(|rate| rate.to_string())),
-            ("--fit-together, --whole-take", Some(together)),
-            ("--mask, --segment", segmented),
-            ("--rig", Some(content(&arguments.rig)?)),
-            ("--hand", arguments.hand.as_deref().map(content).transpose()?),
-            ("--timestamps", arguments.recording.timestamps.as_deref().map(content).transpose()?),
-            ("the file of --segment", segment.segment.as_deref().map(content).transpose()?),
+        let mut parts = vec![
+            ("the program".to_owned(), Maker::here().to_string()),
+            ("the kind of output".to_owned(), format!("{:?}", arguments.kind()?)),
         ];
-        let settings = settings.into_iter().map(|(name, value)| {
-            (name.to_owned(), value.unwrap_or_else(|| "not given".to_owned()))
-        });
-        let mut parts: Vec<(String, String)> = settings.collect();
+        let side = arguments.side.to_possible_value();
+        let side = side.map_or_else(String::new, |side| side.get_name().to_owned());
+        let rate = arguments.rate.map_or_else(|| "not given".to_owned(), |rate| rate.to_string());
+        let segment = &arguments.recording.segment;
+        for (name, value) in [
+            ("--side", side),
+            ("--rate", rate),
+            ("--fit-together", arguments.fitted_together().to_string()),
+            ("--mask, --segment", segment.given()),
+        ] {
+            parts.push((name.to_owned(), value));
+        }
+        let files = [
+            ("--rig", Some(&arguments.rig)),
+            ("--hand", arguments.hand.as_ref()),
+            ("--timestamps", arguments.recording.timestamps.as_ref()),
+            ("the file of --segment", segment.segment.as_ref()),
+        ];
+        for (name, path) in files {
+            let content = path.map_or_else(|| Ok("not given".to_owned()), |path| content(path))?;
+            parts.push((name.to_owned(), content));
+        }
         for (camera, path) in source.recordings() {
             let recording = recording(path).with_context(|| path.display().to_string())?;
             parts.push((format!("the recording of camera '{}'", camera.name), recording));
         }
+        for path in source.landmark_paths() {
+            let content = if path.is_dir() { folder(path, is_frame) } else { content(path) };
+            let content = content.with_context(|| path.display().to_string())?;
+            parts.push((format!("--landmarks {}", path.display()), content));
+        }
         Ok(Self(parts))
     }
 
-    /// The first thing in which an earlier one differs, in words.
-    pub(super) fn difference(&self, earlier: &Self) -> Option<String> {
-        let mut names = self.0.iter().chain(&earlier.0).map(|(name, _)| name.as_str());
-        let name = names.find(|name| self.value(name) != earlier.value(name))?;
-        Some(format!("{name} is {}, and was {}", self.value(name), earlier.value(name)))
-    }
-
-    fn value(&self, name: &str) -> &str {
-        let found = self.0.iter().find(|(found, _)| found == name);
-        found.map_or("absent", |(_, value)| value)
+    /// The first thing in which another one differs, in words.
+    pub(super) fn difference(&self, other: &Self) -> Option<String> {
+        let Self(own) = self;
+        let of = |name: &String| {
+            let found = other.0.iter().find(|(found, _)| found == name);
+            found.map_or("absent", |(_, value)| value)
+        };
+        let differs = own.iter().find(|(name, value)| of(name) != value);
+        let (name, value) = match differs {
+            Some((name, value)) => (name, value.as_str()),
+            None => {
+                other.0.iter().find(|pair| !own.contains(pair)).map(|(name, _)| (name, "absent"))?
+            }
+        };
+        Some(format!("{name} is {value}, and was {}", of(name)))
     }
 }
 
@@ -79,7 +97,7 @@ fn content(path: &Path) -> Result<String> {
 fn recording(path: &Path) -> Result<String> {
     let metadata = std::fs::metadata(path)?;
     if metadata.is_dir() {
-        return folder(path);
+        return folder(path, is_picture);
     }
     let mut beginning = Vec::new();
     if metadata.is_file() {
@@ -89,12 +107,12 @@ fn recording(path: &Path) -> Result<String> {
     Ok(format!("{} with checksum {checksum:08x}", size_and_time(&metadata)?))
 }
 
-/// A folder by those of its pictures, in any order: results may be written beside them.
-fn folder(path: &Path) -> Result<String> {
+/// A folder by those of its frames' files, in any order: results may be written beside them.
+fn folder(path: &Path, is_of_frame: fn(&Path) -> bool) -> Result<String> {
     let (mut count, mut sum) = (0_u64, 0_u64);
     for entry in std::fs::read_dir(path)? {
         let entry = entry?;
-        if !is_picture(&entry.path()) {
+        if !is_of_frame(&entry.path()) {
             continue;
         }
         let own = size_and_time(&std::fs::metadata(entry.path())?)?;
@@ -102,7 +120,7 @@ fn folder(path: &Path) -> Result<String> {
         count += 1;
         sum = sum.wrapping_add(u64::from(crc32fast::hash(own.as_bytes())));
     }
-    Ok(format!("of {count} pictures with checksum {sum:x}"))
+    Ok(format!("of {count} frames with checksum {sum:x}"))
 }
 
 fn size_and_time(metadata: &Metadata) -> Result<String> {

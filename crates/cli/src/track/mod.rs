@@ -32,7 +32,7 @@ use crate::rig::check;
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let kind = arguments.kind()?;
     let rig = check::read(&arguments.rig)?;
-    let source = Source::new(&rig, &arguments.recording)?;
+    let source = Source::new(&rig, &arguments.recording, arguments.side.into())?;
     let given = [Some(&arguments.rig), arguments.hand.as_ref()];
     let inputs: Vec<&PathBuf> = source.inputs().chain(given.into_iter().flatten()).collect();
     let out = Output::new(&arguments.out, &inputs)?;

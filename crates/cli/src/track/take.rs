@@ -77,6 +77,7 @@ fn code(doubt: &FitDoubt, cameras: &[Camera]) -> String {
         FitDoubt::NotSeen => "no-hand".to_owned(),
         FitDoubt::Open => "open".to_owned(),
         FitDoubt::PoorFit { .. } => "poor-fit".to_owned(),
+        FitDoubt::PoorLandmarks { view, .. } => format!("poor-landmarks:{}", cameras[*view].name),
         FitDoubt::CutOff { view } => format!("cut-off:{}", cameras[*view].name),
         _ => "doubtful".to_owned(),
     }

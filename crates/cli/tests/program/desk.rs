@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use glam::DVec3;
 use image::DynamicImage;
 use phalanx::{Estimator, FixedPoses, NoProgress, Preset, Training, draw_silhouette};
-use phalanx_camera::Rig;
+use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
 use phalanx_multiview::CodebookTrainer;
 use phalanx_render::{Appearance, Renderer};
@@ -110,6 +110,13 @@ impl Desk {
 
     pub(crate) fn folder(&self) -> &Path {
         self.folder.path()
+    }
+
+    /// The hand's joints, closed by so much, in each camera's picture, px.
+    pub(crate) fn points(closed: f64) -> [[[f64; 2]; JOINTS]; 2] {
+        let (rig, joints) = (rig(), Self::joints(closed));
+        let seen = |camera: &Camera| joints.map(|joint| camera.project(joint).unwrap().to_array());
+        [seen(&rig.cameras[0]), seen(&rig.cameras[1])]
     }
 
     /// Draws a silhouette of the hand, closed by so much, into `<folder>/<camera>/<name>` for each

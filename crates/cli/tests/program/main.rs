@@ -4,6 +4,7 @@ mod calibrations;
 mod desk;
 mod doctors;
 mod estimates;
+mod landmarks;
 mod manuals;
 mod outputs;
 mod refinements;

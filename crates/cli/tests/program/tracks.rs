@@ -7,7 +7,7 @@ use crate::desk::{CAMERAS, Desk, Outcome, run};
 use phalanx_io::take::{Take, read_csv};
 
 /// How far the hand is closed in a frame.
-fn closed(frame: usize) -> f64 {
+pub(crate) fn closed(frame: usize) -> f64 {
     0.5 - 0.5 * (0.9 * frame as f64).cos()
 }
 
@@ -25,12 +25,12 @@ fn track(desk: &Desk, arguments: &[&str]) -> Outcome {
     run(desk.folder(), ["track", "--rig", "rig.toml", "--mask"].iter().chain(arguments))
 }
 
-fn take(desk: &Desk, name: &str) -> Take {
+pub(crate) fn take(desk: &Desk, name: &str) -> Take {
     read_csv(desk.read(name).as_slice()).unwrap()
 }
 
 /// Mean distance of the joints from where they were drawn, mm.
-fn error_mm(take: &Take) -> f64 {
+pub(crate) fn error_mm(take: &Take) -> f64 {
     let mut distances = Vec::new();
     for (number, frame) in take.frames.iter().enumerate() {
         let drawn = Desk::joints(closed(number));

@@ -24,10 +24,9 @@ mod track;
 
 use phalanx_hand::Side;
 
-pub use track::LandmarkTrack;
+pub use track::{LandmarkTrack, number_in_name};
 
 use crate::error::{Error, Result};
-use crate::landmarks::track::number_in_name;
 use crate::source::Source;
 
 /// Reads a file of landmarks of the hand of a `side`: one track for each camera that it holds.
@@ -73,7 +72,8 @@ pub fn read(file: &Source<'_>, side: Side) -> Result<Vec<LandmarkTrack>> {
 fn text(file: &Source<'_>, side: Side) -> Result<Vec<LandmarkTrack>, String> {
     let text = file.decoded().ok_or("it is neither text nor a NumPy array")?;
     let first = text.lines().find(|line| !line.trim().is_empty()).ok_or("the file is empty")?;
-    let number = number_in_name(file.stem());
+    let stem = file.name.rsplit_once('.').map_or(file.name, |(stem, _)| stem);
+    let number = number_in_name(stem);
     match first.trim_start().as_bytes() {
         [b'{', ..] if openpose::is_frame(&text) => openpose::read(&text, side, number),
         [b'{' | b'[', ..] => mediapipe::read(&text, side, number),

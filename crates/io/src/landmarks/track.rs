@@ -15,6 +15,8 @@ pub struct LandmarkTrack {
     pub camera: Option<String>,
     /// The points of each frame, by its number; none of frames without a hand.
     pub frames: BTreeMap<u64, Landmarks>,
+    /// How many frames a file holds that does not number them: their numbers are their places in it.
+    pub places: Option<u64>,
 }
 
 /// Coordinates none of which is larger are shares of a picture's width and height: no hand is three
@@ -35,11 +37,15 @@ impl LandmarkTrack {
         self
     }
 
-    /// Adds the frames of another file of the same camera.
+    /// Adds the frames of another file of the same camera, which has numbers for them.
     ///
     /// # Errors
-    /// A frame that both have.
+    /// A frame that both have, or files that do not number their frames.
     pub fn join(&mut self, other: Self, file: &str) -> Result<()> {
+        if other.places.is_some() {
+            let what = "its name has no frame's number, as that of each of several files must";
+            return Err(Error::landmarks(file, what));
+        }
         other.frames.into_iter().try_for_each(|(number, points)| match self.frames.entry(number) {
             Entry::Vacant(free) => {
                 free.insert(points);
@@ -56,14 +62,15 @@ impl LandmarkTrack {
         camera: Option<String>,
         frames: impl IntoIterator<Item = (Option<u64>, Option<Landmarks>)>,
     ) -> Result<Self, String> {
-        let mut track = Self { camera, frames: BTreeMap::new() };
-        let mut has_numbers = None;
+        let mut track = Self { camera, ..Self::default() };
+        let (mut has_numbers, mut count) = (None, 0);
         for (place, (number, points)) in (0..).zip(frames) {
             if *has_numbers.get_or_insert(number.is_some()) != number.is_some() {
                 return Err(format!(
                     "frame {place} of the file: some frames have a number and some none"
                 ));
             }
+            count = place + 1;
             let number = number.unwrap_or(place);
             if let Some(points) = points.filter(has_any)
                 && track.frames.insert(number, points).is_some()
@@ -71,12 +78,20 @@ impl LandmarkTrack {
                 return Err(format!("frame {number} comes twice"));
             }
         }
+        track.places = (has_numbers == Some(false)).then_some(count);
         Ok(track)
     }
 }
 
-/// The last number of a name, such as that of `take_000000000012_keypoints`.
-pub(super) fn number_in_name(name: &str) -> Option<u64> {
+/// The last number of a name, such as that of `take_000000000012_keypoints`: what frames are numbered by.
+///
+/// ```
+/// use phalanx_io::landmarks::number_in_name;
+///
+/// assert_eq!(number_in_name("cam1_frame0042.png"), Some(42));
+/// assert_eq!(number_in_name("thumb"), None);
+/// ```
+pub fn number_in_name(name: &str) -> Option<u64> {
     let is_digit = |c: char| c.is_ascii_digit();
     let end = name.rfind(is_digit)? + 1;
     let digits = name[..end].trim_end_matches(is_digit).len();

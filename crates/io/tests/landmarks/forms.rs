@@ -32,7 +32,12 @@ fn frames(confident: bool) -> impl Strategy<Value = Frames> {
 
 fn track(frames: &Frames) -> LandmarkTrack {
     let numbered = (0..).zip(frames).filter_map(|(k, frame)| Some((k, (*frame)?)));
-    LandmarkTrack { camera: None, frames: numbered.collect() }
+    LandmarkTrack { frames: numbered.collect(), ..LandmarkTrack::default() }
+}
+
+/// The same of a file that does not number its frames.
+fn placed(frames: &Frames) -> LandmarkTrack {
+    LandmarkTrack { places: Some(frames.len() as u64), ..track(frames) }
 }
 
 fn read_one(name: &str, bytes: &[u8], side: Side) -> Result<LandmarkTrack, Error> {
@@ -106,6 +111,7 @@ proptest! {
         prop_assert_eq!(&read_one("a.csv", table(&frames).as_bytes(), Side::Right).unwrap(), &whole);
         let written = deeplabcut(&frames);
         prop_assert_eq!(&read_one("a.csv", written.as_bytes(), Side::Right).unwrap(), &whole);
+        let whole = placed(&frames);
         prop_assert_eq!(&read_one("a.npy", &array(&frames, 1), Side::Right).unwrap(), &whole);
         let file = array(&frames, 2);
         let both = read(&Source { name: "a.npy", bytes: &file }, Side::Right).unwrap();
@@ -114,7 +120,7 @@ proptest! {
 
     #[test]
     fn what_is_written_as_lists_is_read(frames in frames(false)) {
-        let whole = track(&frames);
+        let whole = placed(&frames);
         let lists: Value =
             frames.iter().map(|frame| frame.as_ref().map_or(Value::Null, point_lists)).collect();
         let text = lists.to_string();
@@ -145,7 +151,7 @@ proptest! {
         let mut joined = LandmarkTrack::default();
         for (&number, points) in &whole.frames {
             let frames = BTreeMap::from([(number, *points)]);
-            joined.join(LandmarkTrack { camera: None, frames }, "a").unwrap();
+            joined.join(LandmarkTrack { frames, ..LandmarkTrack::default() }, "a").unwrap();
         }
         prop_assert_eq!(&joined, &whole);
         let again = joined.join(whole, "b.json").unwrap_err().to_string();

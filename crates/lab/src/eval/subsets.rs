@@ -33,7 +33,7 @@ pub struct Arguments {
     /// The presets that are learnt by, separated by commas.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "fast")]
     presets: Vec<PresetName>,
-    /// How many scenes are learnt from at most; as many as each preset asks for by default.
+    /// How many scenes are learnt from; as many as each preset asks for by default.
     #[arg(long, value_name = "N", value_parser = sets::samples)]
     samples: Option<usize>,
     /// Write the figures as JSON, too.
@@ -61,15 +61,12 @@ struct Score {
     std_deg: f64,
     /// The shares of angles within the deviations that should hold 68 % and 95 %.
     within: [f64; 2],
-    /// The share of answers that are doubted.
-    doubted: f64,
 }
 
 /// What learning takes.
 #[derive(Serialize)]
 struct Cost {
     preset: String,
-    samples: usize,
     /// CPU seconds to learn to answer from all cameras, and from any.
     all_s: f64,
     any_s: f64,
@@ -114,8 +111,7 @@ fn measure(
     let hand = files::hand(None)?;
     let preset =
         name.to_possible_value().context("presets can be asked for")?.get_name().to_owned();
-    let asked = name.preset().scenes();
-    let samples = samples.map_or(asked, |most| asked.min(most));
+    let samples = samples.unwrap_or(name.preset().scenes());
     let learn = |rig: &Rig, cameras: Cameras| {
         let trainer = Trainer::preset(name.preset()).samples(samples).answers_from(cameras);
         timed(|| trainer.fit(rig, &hand, progress))
@@ -124,25 +120,24 @@ fn measure(
     let (all_s, all) = learn(rig, Cameras::All)?;
     figures.costs.push(Cost {
         preset: preset.clone(),
-        samples,
         all_s,
         any_s,
         all_bytes: all.to_bytes()?.len(),
         any_bytes: any.to_bytes()?.len(),
     });
-    let tests = TESTS.map(|test| Seen::of(test, rig, &hand, progress));
-    let tests = tests.into_iter().collect::<Result<Vec<_>>>()?;
     for views in subsets(rig.cameras.len()) {
         let names: Vec<&str> = views.iter().map(|&view| rig.cameras[view].name.as_str()).collect();
+        let own_rig = rig.select(&names)?;
         let own = if views.len() == rig.cameras.len() {
             all.clone()
         } else {
-            learn(&rig.select(&names)?, Cameras::All)?.1
+            learn(&own_rig, Cameras::All)?.1
         };
-        for seen in &tests {
+        for test in TESTS {
+            let seen = Seen::of(test, rig, &hand, progress)?;
             figures.rows.push(Row {
                 preset: preset.clone(),
-                test: seen.test,
+                test: test.name(),
                 cameras: names.join(", "),
                 any: seen.score(|masks, workspace| {
                     let picture = |view: usize| views.contains(&view).then_some(&masks[view]);
@@ -171,7 +166,6 @@ fn subsets(cameras: usize) -> Vec<Vec<usize>> {
 
 /// A test as all cameras see it.
 struct Seen {
-    test: &'static str,
     scenes: Vec<(Pose, Vec<Mask>)>,
 }
 
@@ -189,7 +183,7 @@ impl Seen {
             Some((scene.pose, masks))
         };
         let numbers = (0..set.count()).into_par_iter().map_init(|| describer.clone(), see);
-        Ok(Self { test: set.name, scenes: numbers.flatten().collect() })
+        Ok(Self { scenes: numbers.flatten().collect() })
     }
 
     fn score(
@@ -198,7 +192,7 @@ impl Seen {
     ) -> Result<Score> {
         let angles = active_angles();
         let one = |workspace: &mut Workspace, (truth, masks): &(Pose, Vec<Mask>)| {
-            let Estimate { pose, std, doubts, .. } = estimate(masks, workspace)?;
+            let Estimate { pose, std, .. } = estimate(masks, workspace)?;
             let std = |dof: Dof| std[dof.index()].unwrap_or_default();
             let off = |dof: Dof| (pose[dof] - truth[dof]).abs();
             let share = |deviations: f64| {
@@ -207,18 +201,12 @@ impl Seen {
             };
             let mean_std = angles.iter().map(|&dof| std(dof)).sum::<f64>() / angles.len() as f64;
             let [one, two] = PROMISED.map(share);
-            let doubted = f64::from(u8::from(!doubts.is_empty()));
-            Ok([mean_error_deg(&pose, truth), mean_std.to_degrees(), one, two, doubted])
+            Ok([mean_error_deg(&pose, truth), mean_std.to_degrees(), one, two])
         };
         let each = self.scenes.par_iter().map_init(Workspace::default, one);
-        let each = each.collect::<phalanx::Result<Vec<[f64; 5]>>>()?;
+        let each = each.collect::<phalanx::Result<Vec<[f64; 4]>>>()?;
         let mean = |k: usize| each.iter().map(|all| all[k]).sum::<f64>() / each.len() as f64;
-        Ok(Score {
-            error_deg: mean(0),
-            std_deg: mean(1),
-            within: [mean(2), mean(3)],
-            doubted: mean(4),
-        })
+        Ok(Score { error_deg: mean(0), std_deg: mean(1), within: [mean(2), mean(3)] })
     }
 }
 
@@ -227,12 +215,12 @@ fn body(figures: &Figures) -> Result<String> {
         "One model is learnt from all cameras of the desk and asked about some of them, beside a model that is learnt\n\
          from just these (`own`), by the same preset from as many scenes. Errors and standard deviations are means over\n\
          the 21 active angles, degrees; 68 % and 95 % are the shares of angles within as many deviations as should hold\n\
-         so many. *Doubted* are answers with any doubt.\n",
+         so many.\n",
     );
-    for Cost { preset, samples, all_s, any_s, all_bytes, any_bytes } in &figures.costs {
+    for Cost { preset, all_s, any_s, all_bytes, any_bytes } in &figures.costs {
         write!(
             text,
-            "\n## {preset}\n\nFrom {samples} scenes. To learn any cameras takes {:.2} of the time of all alone ({any_s:.0} s and {all_s:.0} s \
+            "\n## {preset}\n\nTo learn any cameras takes {:.2} of the time of all alone ({any_s:.0} s and {all_s:.0} s \
              of one core), and the file {:.1} MiB in place of {:.1} MiB.\n",
             any_s / all_s,
             mebibytes(*any_bytes),
@@ -260,8 +248,6 @@ fn table<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {
         "own",
         "95 %",
         "own",
-        "doubted",
-        "own",
     ]);
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     for Row { cameras, any, own, .. } in rows {
@@ -276,8 +262,6 @@ fn table<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {
             percent(own.within[0]),
             percent(any.within[1]),
             percent(own.within[1]),
-            percent(any.doubted),
-            percent(own.doubted),
         ]);
     }
     table

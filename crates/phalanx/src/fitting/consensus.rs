@@ -9,8 +9,9 @@ use rayon::prelude::*;
 use super::frame_fit::{Found, FrameFitter};
 use super::misfit::DISAGREEMENT;
 use super::observation::{Sight, fitted_hand, length_mm};
+use super::starts;
+use super::take_frame::TakeFrame;
 use super::weights::ViewWeights;
-use super::{TakeFrame, starts};
 use crate::{Error, NoProgress, Progress, Result};
 
 /// Frames from which it is found where the hand works.

@@ -6,7 +6,7 @@ use phalanx_hand::{HandShape, Pose};
 use phalanx_segmentation::{HandDetection, HandDetector, Mask};
 
 use super::points::CameraPoints;
-use super::take::TakeFrame;
+use super::take_frame::TakeFrame;
 
 use crate::localize::{Arm, BoundingSphere, Detections, HandCrop, Placement, associate};
 use crate::{Error, Result};

@@ -3,10 +3,10 @@
 use phalanx_camera::Camera;
 use rayon::prelude::*;
 
-use super::TakeFrame;
 use super::frame_fit::{Found, FrameFitter, Postures};
 use super::motion::Motion;
 use super::observation::Sight;
+use super::take_frame::TakeFrame;
 use super::views;
 use crate::{Progress, Result};
 

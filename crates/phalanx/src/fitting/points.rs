@@ -1,11 +1,10 @@
 //! A detector's landmarks in a frame, and what they tell of where the hand is.
 
-use glam::{DAffine3, DMat3, DVec2, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use phalanx_camera::{Camera, Ray, triangulate};
-use phalanx_hand::{JOINTS, Landmarks, Side};
-use phalanx_refine::{LandmarkNoise, LandmarkObservation};
+use phalanx_hand::{Landmarks, Side};
+use phalanx_refine::LandmarkObservation;
 
-use super::frame_fit::{Found, FrameFitter};
 use super::weights::PointWeight;
 use crate::{Error, Result};
 
@@ -57,7 +56,7 @@ impl CameraPoints {
     }
 
     /// How many pixels a millimetre is wide at a hand.
-    fn pixels_per_mm(&self, frame: &DAffine3) -> Option<f64> {
+    pub(super) fn pixels_per_mm(&self, frame: &DAffine3) -> Option<f64> {
         let at = self.camera.extrinsics.to_camera(frame.translation);
         let focal = (self.camera.intrinsics.fx * self.camera.intrinsics.fy).sqrt();
         (at.z > 0.0).then(|| focal / at.length())
@@ -102,28 +101,6 @@ fn palm_frame(seen: [&CameraPoints; 2], side: Side) -> Option<(f64, DAffine3)> {
     };
     let x = towards_thumb.reject_from_normalized(z).try_normalize()?;
     Some((spread, DAffine3::from_mat3_translation(DMat3::from_cols(x, z.cross(x), z), wrist)))
-}
-
-/// How well each camera's points are known, mm at the hand, from how the fits of a take leave them; `None`
-/// of a camera of which no frame uses any.
-pub(super) fn point_noise(
-    fitter: &FrameFitter<'_>,
-    found: &[Option<Found>],
-) -> Vec<Option<LandmarkNoise>> {
-    let of_camera = |camera: usize| {
-        let residuals = |found: &Found| -> Option<[Option<DVec2>; JOINTS]> {
-            let points =
-                found.points[camera].as_ref().filter(|_| !found.left_out_points(camera))?;
-            let frame = found.frame(fitter.hand);
-            let scale = points.pixels_per_mm(&frame)?;
-            let seen = points.observation(&fitter.weights.points[camera], &frame)?;
-            let residuals = seen.residuals(fitter.hand, &found.rest, &found.refined.pose);
-            Some(residuals.map(|residual| residual.map(|px| px / scale)))
-        };
-        let frames: Vec<_> = found.iter().flatten().filter_map(residuals).collect();
-        LandmarkNoise::of(&frames)
-    };
-    (0..fitter.weights.points.len()).map(of_camera).collect()
 }
 
 #[cfg(test)]

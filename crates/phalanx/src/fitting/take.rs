@@ -2,45 +2,23 @@
 
 use glam::DAffine3;
 use phalanx_camera::{Camera, Volume};
-use phalanx_hand::{HandShape, Landmarks};
+use phalanx_hand::HandShape;
 use phalanx_refine::{PoseFitSettings, PosePrior};
-use phalanx_segmentation::Mask;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::consensus::{self, VolumeEstimate};
 use super::frame_fit::{Found, FrameFitter, Postures};
+use super::knowledge::ViewKnowledge;
 use super::observation::{Sight, fitted_hand};
 use super::passes;
 use super::proportions::{self, HandEvidence, KnownHand};
 use super::report::{FrameFit, Reporter};
 use super::starts;
+use super::take_frame::TakeFrame;
 use super::views;
-use super::weights::{ViewKnowledge, ViewWeights};
+use super::weights::ViewWeights;
 use crate::{Error, Progress, Result};
-
-/// What each camera saw at one time.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct TakeFrame {
-    /// One for each camera: a mask in which hand is over 127, a scaled copy of the camera's image; `None` of
-    /// a camera that has none.
-    pub masks: Vec<Option<Mask>>,
-    /// What a detector saw of the hand, if there is one: for each camera the points in the pixels of its
-    /// image; `None` of a camera whose picture they lack in. Empty without a detector.
-    pub landmarks: Vec<Option<Landmarks>>,
-}
-
-impl TakeFrame {
-    /// Masks alone, one for each camera.
-    pub fn of_masks(masks: Vec<Option<Mask>>) -> Self {
-        Self { masks, landmarks: Vec::new() }
-    }
-
-    /// Landmarks alone, one for each camera.
-    pub fn of_landmarks(landmarks: Vec<Option<Landmarks>>) -> Self {
-        Self { masks: vec![None; landmarks.len()], landmarks }
-    }
-}
 
 /// How takes are fitted.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,12 +1,6 @@
 //! How much what each view shows counts.
 
-use phalanx_refine::{BoundaryNoise, LandmarkNoise};
 use serde::{Deserialize, Serialize};
-
-use super::borders::border_noise;
-use super::frame_fit::{Found, FrameFitter};
-use super::points::point_noise;
-use crate::Result;
 
 /// How much borders and points count, camera by camera.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -30,14 +24,7 @@ impl PointWeight {
     /// Before anything is known of them: points are as far off as borders may be, a quarter of a finger's
     /// width, and all of a hand count as much as its border, of some 350 places beside 21 points along two
     /// axes.
-    const UNKNOWN: Self = Self { std_mm: 4.0, weight: 8.0 };
-}
-
-/// What a take tells of its views.
-pub(super) struct ViewKnowledge {
-    pub(super) weights: ViewWeights,
-    /// Which share of the variance of what they show is the same in every frame.
-    pub(super) persistent: f64,
+    pub(super) const UNKNOWN: Self = Self { std_mm: 4.0, weight: 8.0 };
 }
 
 impl ViewWeights {
@@ -62,37 +49,5 @@ impl ViewWeights {
             borders: self.borders.iter().map(|weight| weight / most).collect(),
             points: self.points.iter().map(point).collect(),
         }
-    }
-}
-
-impl ViewKnowledge {
-    /// From how the fits of a take leave borders and points.
-    pub(super) fn of(fitter: &FrameFitter<'_>, found: &[Option<Found>]) -> Result<Self> {
-        let borders = border_noise(fitter, found)?;
-        let points = point_noise(fitter, found);
-        let noise = fitter.refinement.noise;
-        let of_border =
-            |border: &BoundaryNoise| (noise / border.deviation).powi(2) / border.correlated;
-        let of_points = |points: &LandmarkNoise| PointWeight {
-            std_mm: points.deviation,
-            weight: points.correlated.recip(),
-        };
-        let points_weights: Vec<Option<PointWeight>> =
-            points.iter().map(|own| own.as_ref().map(of_points)).collect();
-        let borders_weights: Vec<Option<f64>> =
-            borders.iter().map(|own| own.as_ref().map(of_border)).collect();
-        // A camera of which nothing is known counts as the best does.
-        let best = |weights: &mut dyn Iterator<Item = f64>| weights.max_by(f64::total_cmp);
-        let of_best = best(&mut borders_weights.iter().copied().flatten())
-            .or_else(|| best(&mut points_weights.iter().flatten().map(|own| own.weight)));
-        let weights = ViewWeights {
-            borders: borders_weights.iter().map(|own| own.or(of_best).unwrap_or(1.0)).collect(),
-            points: points_weights.iter().map(|own| own.unwrap_or(PointWeight::UNKNOWN)).collect(),
-        };
-        let shares = borders.iter().flatten().map(|own| own.persistent);
-        let shares: Vec<f64> =
-            shares.chain(points.iter().flatten().map(|own| own.persistent)).collect();
-        let persistent = shares.iter().sum::<f64>() / shares.len().max(1) as f64;
-        Ok(Self { weights, persistent })
     }
 }

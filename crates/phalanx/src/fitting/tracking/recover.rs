@@ -4,10 +4,10 @@ use glam::DAffine3;
 use phalanx_camera::Camera;
 
 use crate::Result;
-use crate::fitting::TakeFrame;
 use crate::fitting::frame_fit::{Found, FrameFitter, Postures};
 use crate::fitting::misfit;
 use crate::fitting::observation::Sight;
+use crate::fitting::take_frame::TakeFrame;
 
 /// Looks for the hand of a frame that was `followed` badly or not at all, step by step further from where
 /// it was until all views agree: in other postures, near some frames of hands, anywhere.

@@ -3,9 +3,9 @@
 use phalanx_camera::Camera;
 use phalanx_segmentation::{Cleanup, HandDetector, Mask};
 
-use crate::fitting::TakeFrame;
 use crate::fitting::observation::crop_of;
 use crate::fitting::points::CameraPoints;
+use crate::fitting::take_frame::TakeFrame;
 use crate::localize::{BoundingSphere, HandCrop};
 use crate::{Error, Result};
 

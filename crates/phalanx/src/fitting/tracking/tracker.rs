@@ -18,11 +18,12 @@ use super::recover::recover;
 use super::seen::Seen;
 use super::state::TrackerState;
 use crate::fitting::frame_fit::{Found, FrameFitter};
+use crate::fitting::knowledge::ViewKnowledge;
 use crate::fitting::observation::fitted_hand;
 use crate::fitting::proportions::HandEvidence;
 use crate::fitting::report::{FrameFit, Reporter};
-use crate::fitting::take::{Known, Proportions, TakeFit, TakeFrame};
-use crate::fitting::weights::ViewKnowledge;
+use crate::fitting::take::{Known, Proportions, TakeFit};
+use crate::fitting::take_frame::TakeFrame;
 use crate::fitting::{consensus, misfit, starts, views};
 use crate::{Error, Result};
 
