@@ -122,11 +122,10 @@ impl BundleAdjustment {
             frames: (0..).zip(&starts).map(|(k, pose)| problem.frame_parameters(k, pose)).collect(),
             shared: problem.shared(),
         };
-        let views =
-            frames.iter().map(|frame| frame.observations.iter().map(ViewMatcher::new).collect());
+        let views = frames.iter().map(|frame| self.pose_fit.matchers(&frame.observations));
         let mut views: Vec<Vec<ViewMatcher>> = views.collect::<Result<_>>()?;
         let outcome = self.pose_fit.levels_from(1, &problem, start, ANY_ENERGY, &mut views)?;
-        let ious = ious(&problem, &outcome.state, self.pose_fit.finest(), &mut views)?;
+        let ious = ious(&problem, &outcome.state, &mut views)?;
         let shared = &outcome.state.shared;
         let camera = |(k, given): (usize, &Camera)| {
             let correction = shared.corrections.get(k);

@@ -59,8 +59,18 @@ pub(super) fn refinement() -> PoseFitSettings {
 
 /// How frames are fitted when all views that are left agree.
 pub(super) fn believing() -> PoseFitSettings {
-    PoseFitSettings { max_restarts: 0, ..PoseFitSettings::of_noise(NOISE) }
+    let mut settings = PoseFitSettings { max_restarts: 0, ..PoseFitSettings::of_noise(NOISE) };
+    // Starts were screened, which is the coarsest level.
+    settings.levels.remove(0);
+    for level in &mut settings.levels {
+        level.every *= SPARSER;
+    }
+    settings
 }
+
+/// Of so many times more places along a border one is looked at than where borders are known to half a pixel:
+/// a border that is four times less well known errs together over longer pieces.
+const SPARSER: usize = 2;
 
 /// A border that is as far from the hand's as this, in pixels of a crop, begins to count less: a quarter
 /// of a finger's width. How well borders are known is found from the take.

@@ -32,13 +32,20 @@ const SAME: f64 = 0.15;
 /// How wide what leaves a picture must be, mm: half as wide as a finger.
 const LEAVES: f64 = 8.0;
 
-/// From how far borders pull a start at first, three fingers' radii, and how many steps are taken.
-const COARSE: Level = Level { reach: 12.0, every: 4, steps: 4 };
+/// From how far borders pull a start at first, three fingers' radii, and how many steps are taken; places are
+/// looked at a finger's radius apart.
+const COARSE: Level = Level { reach: 12.0, every: 8, steps: 4 };
 
 /// Many starts take one step first, and the best so many all of them (successive halving, Jamieson and
 /// Talwalkar 2016).
 const GLANCE: Level = Level { steps: 1, ..COARSE };
 const SCREENED: usize = 6;
+
+/// Digits are tried in other postures so often at most: each round may put another digit right.
+const ROUNDS: usize = 3;
+
+/// Share of its energy that a round must win to be followed by another.
+const WORTH_ANOTHER: f64 = 0.02;
 
 /// How frames are fitted.
 pub(super) struct FrameFitter<'a> {
@@ -165,9 +172,8 @@ impl FrameFitter<'_> {
         for Screening { rest, screened, crops, evidence, views, .. } in screenings {
             let starts = distinct(&screened, STARTS);
             let postures: Vec<Pose> = starts.iter().take(1).flat_map(starts::postures).collect();
-            let Some(refined) = self.fit(&rest, &evidence, &[starts, postures].concat())? else {
-                continue;
-            };
+            let fits = self.fits(&rest, &evidence, &[starts, postures].concat())?;
+            let Some(refined) = fits.into_iter().next() else { continue };
             let misfit = self.misfit(&rest, &evidence, &refined.pose, views)?;
             if best.as_ref().is_none_or(|best| misfit < best.misfit) {
                 let points = sight.points.clone();
@@ -288,7 +294,8 @@ impl FrameFitter<'_> {
     }
 
     /// A pose fitted once more, the arm cut at its wrist and some views left out: from where it is, from
-    /// some other poses in its frame of rest, and from other postures of its fingers if asked for.
+    /// some other poses in its frame of rest, and from other postures of its fingers if asked for. The best of
+    /// [`hypotheses`](Self::hypotheses).
     pub(super) fn again(
         &self,
         found: &Found,
@@ -296,40 +303,69 @@ impl FrameFitter<'_> {
         others: &[&Found],
         postures: Postures,
     ) -> Result<Option<Found>> {
+        Ok(self.hypotheses(found, left_out, others, postures)?.into_iter().next())
+    }
+
+    /// The poses that such a fit's starts lead to, the best first.
+    pub(super) fn hypotheses(
+        &self,
+        found: &Found,
+        left_out: &[bool],
+        others: &[&Found],
+        postures: Postures,
+    ) -> Result<Vec<Found>> {
         let rest = found.frame(self.hand);
         let evidence = self.seen(&found.crops, &found.points, left_out, &rest);
         if Evidence::from(&evidence).is_empty() {
-            return Ok(None);
+            return Ok(Vec::new());
         }
         let own = found.pose_in(&rest, self.hand);
         let mut starts = vec![own];
         starts.extend(others.iter().map(|other| other.pose_in(&rest, self.hand)));
-        if postures == Postures::All {
-            starts.extend(starts::postures(&own));
+        match postures {
+            Postures::Given => {}
+            Postures::Each => starts.extend(starts::each_digit(&own)),
+            Postures::All => starts.extend(starts::postures(&own)),
         }
-        let Some(refined) = self.fit(&rest, &evidence, &starts)? else { return Ok(None) };
         let used = views_used(&found.crops, &found.points, left_out);
-        let misfit = self.misfit(&rest, &evidence, &refined.pose, used)?;
-        Ok(Some(Found { rest, refined, left_out: left_out.to_vec(), misfit, ..found.clone() }))
+        let hypothesis = |refined: PoseFit| {
+            let misfit = self.misfit(&rest, &evidence, &refined.pose, used)?;
+            Ok(Found { rest, refined, left_out: left_out.to_vec(), misfit, ..found.clone() })
+        };
+        self.fits(&rest, &evidence, &starts)?.into_iter().map(hypothesis).collect()
     }
 
-    /// The best fit from some starts, all of which are screened and the best few fitted fully.
-    fn fit(&self, rest: &DAffine3, evidence: &Seen, starts: &[Pose]) -> Result<Option<PoseFit>> {
-        let glanced = self.screen_at(GLANCE, rest, evidence, starts)?;
-        let screened = self.screen(rest, evidence, &distinct(&glanced, SCREENED))?;
-        let mut best: Option<PoseFit> = None;
-        for start in distinct(&screened, KEPT) {
-            let refined = match self.refinement.fit(self.hand, rest, evidence, &start, self.prior) {
-                Ok(refined) => refined,
-                // One view may leave a pose without a covariance; other poses have one.
-                Err(phalanx_refine::Error::Precision { .. }) => continue,
-                Err(error) => return Err(error.into()),
+    /// A pose fitted once more with each digit in other postures, as often as that wins something.
+    pub(super) fn improved(&self, mut found: Found) -> Result<Found> {
+        for _ in 0..ROUNDS {
+            let Some(again) = self.again(&found, &found.left_out, &[], Postures::Each)? else {
+                break;
             };
-            if best.as_ref().is_none_or(|best| refined.energy < best.energy) {
-                best = Some(refined);
+            let won = found.refined.energy - again.refined.energy;
+            let is_worth_another = won > WORTH_ANOTHER * found.refined.energy;
+            found = again;
+            if !is_worth_another {
+                break;
             }
         }
-        Ok(best)
+        Ok(found)
+    }
+
+    /// The fits from some starts, all of which are screened and the best few fitted fully; the best first.
+    fn fits(&self, rest: &DAffine3, evidence: &Seen, starts: &[Pose]) -> Result<Vec<PoseFit>> {
+        let glanced = self.screen_at(GLANCE, rest, evidence, starts)?;
+        let screened = self.screen(rest, evidence, &distinct(&glanced, SCREENED))?;
+        let mut fits: Vec<PoseFit> = Vec::new();
+        for start in distinct(&screened, KEPT) {
+            match self.refinement.fit(self.hand, rest, evidence, &start, self.prior) {
+                Ok(refined) => fits.push(refined),
+                // One view may leave a pose without a covariance; other poses have one.
+                Err(phalanx_refine::Error::Precision { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        fits.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        Ok(fits)
     }
 
     /// Starts after a few coarse steps, the best first.
@@ -378,7 +414,9 @@ pub(super) fn views_used(
 pub(super) enum Postures {
     /// Those that are given.
     Given,
-    /// Also every finger straight or folded, in all combinations.
+    /// Also with each digit alone in other postures.
+    Each,
+    /// Also with every finger straight or folded, in all combinations.
     All,
 }
 

@@ -5,6 +5,7 @@
 //! of its neighbours. [`fit_frame`] fits one frame of a hand that is known.
 
 mod borders;
+mod chain;
 mod consensus;
 mod flesh;
 mod frame_fit;

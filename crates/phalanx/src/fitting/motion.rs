@@ -1,6 +1,6 @@
 //! How far a hand's joints move from one frame to the next, and what that tells of a frame beside others.
 
-use phalanx_hand::Dof;
+use phalanx_hand::{Dof, Pose};
 use phalanx_refine::PosePrior;
 
 use super::frame_fit::Found;
@@ -14,6 +14,9 @@ pub(super) struct Motion([f64; Dof::COUNT]);
 /// An angle that never moves further than this may still do so, radians: what the fits of two frames of a
 /// still hand differ by.
 const LEAST: f64 = 0.02;
+
+/// Degrees of freedom of the distribution that changes follow: the fewest that have a variance.
+pub(super) const FREEDOM: f64 = 3.0;
 
 impl Motion {
     /// Of a take's poses; `None` where no frame follows another.
@@ -29,6 +32,17 @@ impl Motion {
         };
         let of = |dof: Dof| if dof.is_internal() { deviation(dof) } else { f64::INFINITY };
         (count > 0).then(|| Self(Dof::ALL.map(of)))
+    }
+
+    /// What speaks against one pose so many frames after another: joints walk at random, mostly slowly and at
+    /// times fast (Student's distribution).
+    pub(super) fn against(&self, one: &Pose, other: &Pose, away: usize) -> f64 {
+        let of = |dof: Dof| {
+            let deviations = (other[dof] - one[dof]) / self.0[dof.index()];
+            let square = deviations * deviations / away as f64;
+            0.5 * (FREEDOM + 1.0) * (square / FREEDOM).ln_1p()
+        };
+        Dof::ALL.map(of).iter().sum()
     }
 
     /// What is known of a pose beside those of other frames, each with how many frames it is away: joints

@@ -3,6 +3,7 @@
 use phalanx_camera::Camera;
 use rayon::prelude::*;
 
+use super::chain::likeliest;
 use super::frame_fit::{Found, FrameFitter, Postures};
 use super::motion::Motion;
 use super::observation::Sight;
@@ -30,8 +31,8 @@ pub(super) fn first(
     frames.par_iter().map(search).collect()
 }
 
-/// All frames once more, each from where it was, from where its neighbours are and from other postures. A
-/// frame depends on the pass before alone.
+/// All frames once more, each from where it was, from where its neighbours are and with each digit in other
+/// postures; of what these lead to, the likeliest poses as they follow each other are kept.
 pub(super) fn again(
     fitter: &FrameFitter<'_>,
     found: &[Option<Found>],
@@ -40,12 +41,14 @@ pub(super) fn again(
     progress.begin("fit each frame once more", found.len());
     let once = |k: usize| {
         let near: Vec<&Found> = neighbours(found, k).into_iter().map(|(_, found)| found).collect();
-        let again = |own: &Found| fitter.again(own, &own.left_out, &near, Postures::All);
+        let again = |own: &Found| fitter.hypotheses(own, &own.left_out, &near, Postures::Each);
         let fitted = found[k].as_ref().map(again).transpose();
         progress.step();
-        Ok(fitted?.flatten())
+        Ok(fitted?.unwrap_or_default())
     };
-    (0..found.len()).into_par_iter().map(once).collect()
+    let hypotheses: Vec<Vec<Found>> =
+        (0..found.len()).into_par_iter().map(once).collect::<Result<_>>()?;
+    Ok(likeliest(hypotheses))
 }
 
 /// All frames from the first to the last and back, each between its neighbours as they are then, from which
@@ -53,22 +56,19 @@ pub(super) fn again(
 pub(super) fn swept(
     fitter: &FrameFitter<'_>,
     mut found: Vec<Option<Found>>,
-    postures: Postures,
     progress: &dyn Progress,
 ) -> Result<Vec<Option<Found>>> {
     let Some(motion) = Motion::of(&found) else { return Ok(found) };
     progress.begin("fit each frame between its neighbours", 2 * found.len());
     let count = found.len();
-    let there = (0..count).map(|k| (k, postures));
-    let back = (0..count).rev().map(|k| (k, Postures::Given));
-    for (k, postures) in there.chain(back) {
+    for k in (0..count).chain((0..count).rev()) {
         progress.step();
         let Some(own) = &found[k] else { continue };
         let near = neighbours(&found, k);
         let prior = motion.beside(fitter.prior, &near)?;
         let near: Vec<&Found> = near.into_iter().map(|(_, found)| found).collect();
         let fitter = fitter.with_prior(&prior);
-        found[k] = fitter.again(own, &own.left_out, &near, postures)?;
+        found[k] = fitter.again(own, &own.left_out, &near, Postures::Given)?;
     }
     Ok(found)
 }

@@ -1,14 +1,12 @@
 //! Where fits begin.
 
 use glam::{DAffine3, DMat3, DVec3};
-use phalanx_hand::{Digit, Dof, HandShape, Pose, Side, sample_pose};
+use phalanx_hand::{Digit, Dof, HandShape, Pose, Side};
 use phalanx_refine::PosePrior;
 
+use crate::Result;
 use crate::localize::Placement;
-use crate::{ItemRng, Result};
-
-/// Poses from the coupled prior that tell how angles go together.
-const POSTURES: u64 = 2000;
+use crate::synthesis::postures::coupled;
 
 /// Standard deviations of what is not known at all: any turn, anywhere within a room's reach of where the
 /// fit begins. One view leaves the distance open; a wider prior would leave it without a covariance.
@@ -21,11 +19,6 @@ const RANGE: f64 = 6.0;
 /// What is known of any hand's pose: how its fingers' angles go together, how far wrists bend, and
 /// nothing of where it is.
 pub(super) fn pose_prior() -> Result<PosePrior> {
-    let pose = |item| {
-        let mut random = ItemRng::new(0, item);
-        sample_pose(|| random.uniform())
-    };
-    let postures: Vec<Pose> = (0..POSTURES).map(pose).collect();
     let mut deviations = [f64::INFINITY; Dof::COUNT];
     for dof in [Dof::WristFlexion, Dof::WristDeviation] {
         let (low, high) = dof.range();
@@ -37,8 +30,7 @@ pub(super) fn pose_prior() -> Result<PosePrior> {
     for dof in [Dof::TX, Dof::TY, Dof::TZ] {
         deviations[dof.index()] = ANYWHERE_MM;
     }
-    Ok(PosePrior::independent(Pose::REST, &deviations)?
-        .product(&PosePrior::of_poses(&postures)?)?)
+    Ok(PosePrior::independent(Pose::REST, &deviations)?.product(&coupled())?)
 }
 
 /// How a folded finger's four angles are, degrees.
@@ -47,6 +39,27 @@ const FOLDED_DEG: [f64; 4] = [0.0, 60.0, 85.0, 50.0];
 /// A pose with every finger either straight or folded into the palm, in all combinations.
 pub(super) fn postures(pose: &Pose) -> Vec<Pose> {
     (0..1 << Digit::FINGERS.len()).map(|folded| posture(pose, folded)).collect()
+}
+
+/// How a digit's four angles are in its distinct postures, degrees: a finger straight, bent at its knuckle alone,
+/// at its other joints alone, and folded; a thumb straight, and bent across the palm.
+const FINGER_DEG: [[f64; 4]; 4] =
+    [[0.0; 4], [0.0, 70.0, 10.0, 5.0], [0.0, 10.0, 85.0, 50.0], FOLDED_DEG];
+const THUMB_DEG: [[f64; 4]; 2] = [[20.0, 10.0, 0.0, 0.0], [20.0, 20.0, 40.0, 50.0]];
+
+/// A pose with one digit in another posture, for each digit and each posture.
+pub(super) fn each_digit(pose: &Pose) -> Vec<Pose> {
+    let with = |digit: Digit, degrees: &[f64; 4]| {
+        let mut pose = *pose;
+        for (dof, degrees) in digit.dofs().into_iter().zip(degrees) {
+            pose[dof] = degrees.to_radians();
+        }
+        pose
+    };
+    let fingers = Digit::FINGERS.into_iter();
+    let fingers =
+        fingers.flat_map(|digit| FINGER_DEG.iter().map(move |degrees| with(digit, degrees)));
+    fingers.chain(THUMB_DEG.iter().map(|degrees| with(Digit::Thumb, degrees))).collect()
 }
 
 /// The open hand, and the fist.

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::consensus::{self, VolumeEstimate};
-use super::frame_fit::{Found, FrameFitter, Postures};
+use super::frame_fit::{Found, FrameFitter};
 use super::knowledge::ViewKnowledge;
 use super::observation::{Sight, fitted_hand};
 use super::passes;
@@ -103,20 +103,25 @@ pub fn fit_take(
     let mut found = passes::recovered(cameras, frames, &fitter, &found, progress)?;
     take.refinement = &believing;
     take.weigh(&found)?;
-    if settings.proportions == Proportions::FromTake {
-        for round in 0..ROUNDS {
-            let fitter = take.fitter(Weights::Relative);
-            let learnt = proportions::learn(&take.mean, &fitter, &found, &middle, take.border())?;
-            let Some(learnt) = learnt else { break };
-            take.hand = learnt;
-            let fitter = take.fitter(Weights::Relative);
-            let postures = if round == 0 { Postures::All } else { Postures::Given };
-            found = passes::swept(&fitter, found, postures, progress)?;
-            take.weigh(&found)?;
+    for _ in 0..ROUNDS {
+        let fitter = take.fitter(Weights::Relative);
+        let learnt = match settings.proportions {
+            Proportions::FromTake => {
+                proportions::learn(&take.mean, &fitter, &found, &middle, take.border())?
+            }
+            Proportions::Given => None,
+        };
+        let is_another = learnt.is_some();
+        take.hand = learnt.unwrap_or(take.hand);
+        let fitter = take.fitter(Weights::Relative);
+        found = passes::again(&fitter, &found, progress)?;
+        found = passes::swept(&fitter, found, progress)?;
+        take.weigh(&found)?;
+        if !is_another {
+            break;
         }
     }
     let fitter = take.fitter(Weights::Relative);
-    let found = passes::swept(&fitter, found, Postures::Given, progress)?;
     let found = passes::agreeing(&fitter, &found, progress)?;
     take.weigh(&found)?;
     let volume = VolumeEstimate::around(&middle, found.iter().flatten(), &take.hand.shape);
@@ -144,8 +149,8 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
     let rest = take.volume.volume.rest_frame();
     let sight = Sight::of(cameras, frame)?;
     let found = relative.search_near(&sight, &[rest])?.ok_or(Error::NoHand)?;
-    let again = relative.again(&found, &found.left_out, &[], Postures::All)?;
-    let found = views::without_disagreeing(&relative, &again.unwrap_or(found))?;
+    let found = relative.improved(found)?;
+    let found = views::without_disagreeing(&relative, &found)?;
     let fitter = &fitter(weights.clone());
     Reporter { cameras, fitter, hand, rest }.report(&found)
 }

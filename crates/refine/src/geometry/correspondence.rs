@@ -26,8 +26,12 @@ pub(crate) struct Correspondence {
 /// does not say.
 const CLOSE: f64 = 1.2;
 
-/// How far drawn outlines may be off, px: a tenth of what is known of observed ones.
-const DEVIATION: f64 = 0.05;
+/// How far drawn outlines may be off, over how far observed ones are.
+const DEVIATION: f64 = 0.1;
+
+/// Outlines are drawn no finer than this, px, and no coarser.
+const FINEST: f64 = 0.005;
+const COARSEST: f64 = 0.5;
 
 /// A hull, and where its outline may be.
 #[derive(Debug, Clone)]
@@ -61,9 +65,11 @@ pub(crate) struct ViewMatcher {
 }
 
 impl ViewMatcher {
-    pub(crate) fn new(evidence: &SilhouetteObservation) -> Result<Self> {
+    /// For an observed boundary whose places are known to a standard deviation of `noise` px.
+    pub(crate) fn new(evidence: &SilhouetteObservation, noise: f64) -> Result<Self> {
+        let deviation = (DEVIATION * noise).clamp(FINEST, COARSEST);
         let camera = evidence.camera();
-        let renderer = Renderer::new(camera).and_then(|own| own.with_deviation(DEVIATION));
+        let renderer = Renderer::new(camera).and_then(|own| own.with_deviation(deviation));
         let renderer = renderer.map_err(|reason| render_error(evidence, reason))?;
         Ok(Self {
             renderer,

@@ -34,7 +34,7 @@ impl PoseFitSettings {
         pose: &Pose,
     ) -> Result<Agreement> {
         self.check()?;
-        let mut view = ViewMatcher::new(evidence)?;
+        let mut view = ViewMatcher::new(evidence, self.noise)?;
         view.match_boundary(&hand.pose(pose, rest).primitives, evidence, 1)?;
         let scale = evidence.pixels_per_mm(rest.transform_point3(pose.translation()));
         let distances: Vec<f64> =

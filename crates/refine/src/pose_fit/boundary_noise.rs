@@ -31,7 +31,7 @@ impl BoundaryResiduals {
         evidence: &SilhouetteObservation,
         pose: &Pose,
     ) -> Result<Self> {
-        let mut view = ViewMatcher::new(evidence)?;
+        let mut view = ViewMatcher::new(evidence, FINE)?;
         let posed = hand.pose(pose, rest);
         view.match_boundary(&posed.primitives, evidence, 1)?;
         let scale = evidence.pixels_per_mm(rest.transform_point3(pose.translation()));
@@ -54,6 +54,9 @@ pub struct BoundaryNoise {
     /// of another shape than its model, more frames tell no more.
     pub persistent: f64,
 }
+
+/// How well boundaries are taken to be known when they are drawn, px: better than any is.
+const FINE: f64 = 0.5;
 
 /// Distances within which places are asked whether they err together, px: a finger's length.
 const FARTHEST: usize = 40;

@@ -89,8 +89,7 @@ impl PoseFitSettings {
         if evidence.is_empty() {
             return Err(Error::NoObservation);
         }
-        let mut views =
-            vec![evidence.silhouettes.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?];
+        let mut views = vec![self.matchers(evidence.silhouettes)?];
         let mut problem = Problem {
             given: hand,
             rest,
@@ -126,7 +125,7 @@ impl PoseFitSettings {
         best: &Outcome,
         views: &mut [Vec<ViewMatcher>],
     ) -> Result<PoseFit> {
-        let ious = ious(problem, &best.state, self.finest(), views)?.swap_remove(0);
+        let ious = ious(problem, &best.state, views)?.swap_remove(0);
         let numbers = problem.frames[0].prior.dofs().len();
         Ok(PoseFit {
             pose: best.state.frames[0].pose,

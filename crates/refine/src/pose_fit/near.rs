@@ -4,7 +4,6 @@ use glam::DAffine3;
 use phalanx_hand::{HandShape, Pose};
 
 use crate::error::{Error, Result};
-use crate::geometry::correspondence::ViewMatcher;
 use crate::observation::evidence::Evidence;
 use crate::pose_fit::fit::PoseFit;
 use crate::pose_fit::settings::PoseFitSettings;
@@ -31,8 +30,7 @@ impl PoseFitSettings {
         hand.validate()?;
         let level =
             self.levels.last().filter(|_| !evidence.is_empty()).ok_or(Error::NoObservation)?;
-        let mut views =
-            vec![evidence.silhouettes.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?];
+        let mut views = vec![self.matchers(evidence.silhouettes)?];
         let problem = Problem {
             given: hand,
             rest,

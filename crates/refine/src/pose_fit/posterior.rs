@@ -6,7 +6,6 @@ use glam::{DAffine3, DVec3};
 use phalanx_hand::{Bone, Dof, HandShape, JOINTS, Pose};
 
 use crate::error::{Error, Result};
-use crate::geometry::correspondence::ViewMatcher;
 use crate::observation::evidence::Evidence;
 use crate::pose_fit::settings::PoseFitSettings;
 use crate::priors::nuisance::ShapePrior;
@@ -62,8 +61,7 @@ impl PoseFitSettings {
             let reason = format!("is of {} shape, the hand has {count}", hand_std.len());
             return Err(Error::Precision { reason });
         }
-        let mut views =
-            evidence.silhouettes.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?;
+        let mut views = self.matchers(evidence.silhouettes)?;
         // Views that were fitted with are believed.
         let loss = RobustLoss { disagreement: f64::INFINITY, ..self.finest() };
         let system = linearise(&problem, 0, &parameters, &shared, loss, &mut views)?;

@@ -4,7 +4,6 @@ use glam::DAffine3;
 use phalanx_hand::{HandShape, Pose};
 
 use crate::error::{Error, Result};
-use crate::geometry::correspondence::ViewMatcher;
 use crate::observation::evidence::Evidence;
 use crate::pose_fit::settings::{Level, PoseFitSettings};
 use crate::priors::pose::PosePrior;
@@ -46,8 +45,7 @@ impl PoseFitSettings {
         if evidence.is_empty() {
             return Err(Error::NoObservation);
         }
-        let mut views =
-            vec![evidence.silhouettes.iter().map(ViewMatcher::new).collect::<Result<Vec<_>>>()?];
+        let mut views = vec![self.matchers(evidence.silhouettes)?];
         let problem = Problem {
             given: hand,
             rest,

@@ -1,6 +1,8 @@
 //! How poses are refined.
 
 use crate::error::{Error, Result};
+use crate::geometry::correspondence::ViewMatcher;
+use crate::observation::silhouette::SilhouetteObservation;
 use crate::priors::nuisance::NuisanceParameters;
 use crate::solver::levenberg_marquardt::{ANY_ENERGY, Stop};
 use crate::solver::loss::RobustLoss;
@@ -8,7 +10,7 @@ use crate::solver::loss::RobustLoss;
 /// How poses are refined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseFitSettings {
-    /// From coarse to fine; at the last every place along the boundary is looked at.
+    /// From coarse to fine.
     pub levels: Vec<Level>,
     /// Standard deviation of a boundary's place, px; the levels' reach goes with it
     /// ([`of_noise`](Self::of_noise)).
@@ -99,6 +101,11 @@ impl PoseFitSettings {
         }
     }
 
+    /// What one pose after another is compared with the observed boundaries in.
+    pub(crate) fn matchers(&self, evidence: &[SilhouetteObservation]) -> Result<Vec<ViewMatcher>> {
+        evidence.iter().map(|seen| ViewMatcher::new(seen, self.noise)).collect()
+    }
+
     pub(crate) fn check(&self) -> Result<()> {
         let wrong = |name, value, allowed| Err(Error::Parameter { name, value, allowed });
         if !(self.noise > 0.0 && self.noise.is_finite()) {
@@ -120,9 +127,6 @@ impl PoseFitSettings {
         }
         match self.levels.last() {
             None => wrong("number of levels", 0.0, "at least 1"),
-            Some(level) if level.every != 1 => {
-                wrong("every of the last level", level.every as f64, "1")
-            }
             Some(_) => Ok(()),
         }
     }

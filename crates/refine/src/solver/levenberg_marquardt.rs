@@ -1,14 +1,17 @@
 //! Damped least squares (Levenberg 1944, Marquardt 1963), coarse to fine.
 
+use phalanx_hand::Primitive;
+use phalanx_segmentation::Mask;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::geometry::correspondence::ViewMatcher;
+use crate::observation::silhouette::SilhouetteObservation;
 use crate::priors::gaussian::GaussianPenalty;
 use crate::priors::nuisance::ExtrinsicsCorrection;
 use crate::solver::loss::RobustLoss;
 use crate::solver::normal_equations::{NormalEquations, Step, solve};
-use crate::solver::problem::{Frame, FrameParameters, Problem, SharedParameters};
+use crate::solver::problem::{FrameParameters, Problem, SharedParameters};
 use crate::solver::residuals::linearise;
 
 /// Where a fit is.
@@ -150,19 +153,28 @@ fn linearise_all(
 pub(crate) fn ious(
     problem: &Problem<'_>,
     state: &State,
-    loss: RobustLoss,
     views: &mut [Vec<ViewMatcher>],
 ) -> Result<Vec<Vec<f64>>> {
-    // Draws the state; what was drawn last may be a step that was not taken.
-    linearise_all(problem, state, loss, views)?;
-    let of_frame = |(frame, views): (&Frame<'_>, &Vec<ViewMatcher>)| {
+    let hand = state.shared.shape.hand(problem.given);
+    let mut drawn = Mask::default();
+    let mut of_frame = |k: usize, views: &mut [ViewMatcher]| -> Result<Vec<f64>> {
+        let parameters = &state.frames[k];
+        let posed = hand.pose(&parameters.pose, problem.rest);
+        let of_view = |(v, (view, seen)): (usize, (&mut ViewMatcher, &SilhouetteObservation))| {
+            let motion = problem.motion(parameters, &state.shared, v);
+            let moved: Vec<Primitive> =
+                posed.primitives.iter().map(|primitive| primitive.moved(&motion)).collect();
+            view.draw(&moved, seen, &mut drawn)?;
+            Ok(seen.iou(&drawn))
+        };
         views
-            .iter()
-            .zip(frame.evidence.silhouettes)
-            .map(|(view, seen)| seen.iou(view.drawn()))
+            .iter_mut()
+            .zip(problem.frames[k].evidence.silhouettes)
+            .enumerate()
+            .map(of_view)
             .collect()
     };
-    Ok(problem.frames.iter().zip(&*views).map(of_frame).collect())
+    views.iter_mut().enumerate().map(|(k, views)| of_frame(k, views)).collect()
 }
 
 fn moved(problem: &Problem<'_>, state: &State, step: &Step) -> State {

@@ -260,7 +260,7 @@ mod tests {
             let loss = RobustLoss { reach: 3.0, noise: 0.5, margin: 1.0, every: 7, disagreement: f64::INFINITY };
             let (parameters, shared) = (problem.frame_parameters(0, &pose), problem.shared());
             let mut views: Vec<ViewMatcher> =
-                evidence.silhouettes.iter().map(|own| ViewMatcher::new(own).unwrap()).collect();
+                evidence.silhouettes.iter().map(|own| ViewMatcher::new(own, loss.noise).unwrap()).collect();
             let system = linearise(&problem, 0, &parameters, &shared, loss, &mut views).unwrap();
             // Where a ray goes just through the axis of a solid, distances have a kink.
             let within = |slope: f64, gradient: f64| {

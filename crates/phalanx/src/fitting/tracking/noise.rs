@@ -4,6 +4,7 @@ use phalanx_hand::Dof;
 use serde::{Deserialize, Serialize};
 
 use super::motion::NUMBERS;
+use crate::fitting::motion::FREEDOM;
 
 /// Which numbers are learnt together: the digits and the wrist, the hand's turn, its place.
 const GROUPS: usize = 3;
@@ -37,10 +38,6 @@ const MOST: f64 = 3.0;
 
 /// The median of a normal distribution's squares is this share of their mean.
 const MEDIAN_SQUARE: f64 = 0.4549;
-
-/// Degrees of freedom of the distribution (Student's) that changes of velocity follow: the fewest that have
-/// a variance. A hand is at rest for long and then moves fast.
-const FREEDOM: f64 = 3.0;
 
 /// Less of a number's variance than this is not said by a frame that says something about it.
 const TOLD: f64 = 0.1;
