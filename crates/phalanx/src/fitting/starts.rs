@@ -30,7 +30,7 @@ pub(super) fn pose_prior() -> Result<PosePrior> {
     for dof in [Dof::TX, Dof::TY, Dof::TZ] {
         deviations[dof.index()] = ANYWHERE_MM;
     }
-    Ok(PosePrior::independent(Pose::REST, &deviations)?.product(&coupled())?)
+    Ok(PosePrior::independent(Pose::REST, &deviations)?.product(coupled())?)
 }
 
 /// How a folded finger's four angles are, degrees.

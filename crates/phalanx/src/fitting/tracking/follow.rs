@@ -120,7 +120,7 @@ impl Frame<'_> {
     /// The same from a pose with every finger straight or folded.
     fn in_other_postures(&self, pose: &Pose) -> Result<Option<Fitted>> {
         let Self { fitter, rest, evidence, .. } = self;
-        let postures = starts::each_digit(pose);
+        let postures = starts::postures(pose);
         let (settings, prior) = (fitter.refinement, fitter.prior);
         let mut likely =
             settings.screen(fitter.hand, rest, evidence, &postures, prior, AS_THEY_ARE)?;

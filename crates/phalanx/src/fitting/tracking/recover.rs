@@ -29,8 +29,7 @@ pub(super) fn recover(
     let found =
         if near.is_empty() { fitter.search(&sight)? } else { fitter.search_near(&sight, near)? };
     if let Some(found) = found {
-        let again = fitter.again(&found, &found.left_out, &[], Postures::All)?;
-        best = better(best, again.or(Some(found)));
+        best = better(best, Some(fitter.improved(found)?));
     }
     Ok(best)
 }
