@@ -114,7 +114,9 @@ fn landmarks_that_contradict_the_other_views_are_left_out() {
     let both = fit(&frames);
     let left_out = |fit: &&FrameFit| {
         let view = fit.views[1];
-        view.missing.is_none() && view.landmarks.is_some_and(|landmarks| !landmarks.is_used)
+        view.is_mask_used
+            && view.missing.is_none()
+            && view.landmarks.is_some_and(|landmarks| !landmarks.is_used)
     };
     assert_eq!(both.frames.iter().filter(left_out).count(), 5);
     let of_both = errors(&both.frames, &joints);

@@ -1,7 +1,7 @@
 //! A fitted take as it is written.
 
 use glam::DAffine3;
-use phalanx::{FitDoubt, FrameFit, Missing};
+use phalanx::{FitDoubt, FrameFit, Missing, ViewFit};
 use phalanx_camera::Camera;
 use phalanx_hand::HandShape;
 use phalanx_io::take::{FrameView, LeftOut, PoseEstimate, TakeFrame, TakeHeader};
@@ -50,7 +50,7 @@ pub(crate) fn frame(
     let views = fit.views.iter().zip(&moment.frames).map(|(view, picture)| FrameView {
         used: view.missing.is_none(),
         overlap: view.overlap,
-        left_out: picture.and(view.missing).and_then(left_out),
+        left_out: picture.and_then(|_| left_out(view)),
     });
     let doubts = fit.doubts.iter().map(|doubt| code(doubt, cameras)).collect();
     TakeFrame {
@@ -62,11 +62,15 @@ pub(crate) fn frame(
     }
 }
 
-/// Why a picture that is there had no part.
-fn left_out(missing: Missing) -> Option<LeftOut> {
-    match missing {
-        Missing::Disagrees => Some(LeftOut::Disagrees),
-        Missing::NoHand => Some(LeftOut::NoHand),
+/// Why a picture that is there had no part, or some of what was seen in it.
+fn left_out(view: &ViewFit) -> Option<LeftOut> {
+    match view.missing {
+        Some(Missing::Disagrees) => Some(LeftOut::Disagrees),
+        Some(Missing::NoHand) => Some(LeftOut::NoHand),
+        None if view.overlap.is_some() && !view.is_mask_used => Some(LeftOut::Mask),
+        None if view.landmarks.is_some_and(|landmarks| !landmarks.is_used) => {
+            Some(LeftOut::Landmarks)
+        }
         _ => None,
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use phalanx_io::take::{LeftOut, TakeFrame};
 use serde_json::json;
 
 use crate::desk::{CAMERAS, Desk, Outcome, run};
@@ -83,6 +84,27 @@ fn landmarks_join_a_recording() {
     let mixed = take(&desk, "mixed.csv");
     let used = |number: usize| mixed.frames[number].views.iter().filter(|view| view.used).count();
     assert_eq!((mixed.frames.len(), used(2), used(3)), (FRAMES, 2, 1));
+}
+
+#[test]
+fn landmarks_that_contradict_the_masks_are_named() {
+    let desk = recorded(4);
+    let shifted = |row: &str| {
+        let mut cells = row.split(',').map(str::to_owned).collect::<Vec<_>>();
+        if let Ok(x) = cells[2].parse::<f64>() {
+            cells[2] = (x + 25.0).to_string();
+        }
+        cells.join(",") + "\n"
+    };
+    let far: String = table(0, 0..4).lines().map(shifted).collect();
+    desk.write("far.csv", far.as_bytes());
+    let given = format!("{}=far.csv", CAMERAS[0]);
+    let outcome = track(&desk, &["take", "--mask", "--landmarks", &given, "--out", "take.csv"]);
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    let found = take(&desk, "take.csv");
+    let named = |frame: &&TakeFrame| frame.views[0].left_out == Some(LeftOut::Landmarks);
+    assert_eq!(found.frames.iter().filter(named).count(), 4, "{outcome:?}");
+    assert!(error_mm(&found) < 9.0, "{} mm", error_mm(&found));
 }
 
 #[test]

@@ -94,11 +94,12 @@ pub struct FrameView {
     /// How well the estimated hand, drawn again, covers the silhouette that was seen:
     /// intersection over union, 0 to 1.
     pub overlap: Option<f64>,
-    /// Why a picture that is there had none; the estimate is that of the others, and not in doubt for it.
+    /// Why what is there of it had none, or part of that; the estimate is that of the others, and not in doubt
+    /// for it.
     pub left_out: Option<LeftOut>,
 }
 
-/// Why a camera's picture had no part in an estimate.
+/// Why a camera's picture, or what was seen in it, had no part in an estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -107,17 +108,23 @@ pub enum LeftOut {
     Disagrees,
     /// It shows nothing where the others see the hand.
     NoHand,
+    /// Its mask contradicts the others; its landmarks had a part.
+    Mask,
+    /// Its landmarks contradict the others; its mask had a part.
+    Landmarks,
 }
 
 impl LeftOut {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Disagrees, Self::NoHand];
+    pub const ALL: [Self; 4] = [Self::Disagrees, Self::NoHand, Self::Mask, Self::Landmarks];
 
     /// Its name in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::Disagrees => "disagrees",
             Self::NoHand => "no-hand",
+            Self::Mask => "mask",
+            Self::Landmarks => "landmarks",
         }
     }
 

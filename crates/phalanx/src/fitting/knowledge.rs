@@ -7,7 +7,7 @@ use phalanx_refine::{BoundaryNoise, LandmarkNoise};
 use super::borders::border_noise;
 use super::frame_fit::{Found, FrameFitter};
 use super::weights::{PointWeight, ViewWeights};
-use crate::Result;
+use crate::error::Result;
 
 /// What a take tells of its views.
 pub(super) struct ViewKnowledge {

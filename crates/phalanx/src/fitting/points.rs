@@ -6,7 +6,7 @@ use phalanx_hand::{Landmarks, Side};
 use phalanx_refine::LandmarkObservation;
 
 use super::weights::PointWeight;
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// The knuckles of index to little finger among the joints.
 const KNUCKLES: [usize; 4] = [5, 9, 13, 17];

@@ -41,6 +41,8 @@ pub struct ViewFit {
     /// Intersection over union of the drawn and the observed silhouette, of what is known; `None` where
     /// nothing was observed.
     pub overlap: Option<f64>,
+    /// Whether its mask was used; not where it contradicts the other views, or there is no hand in it.
+    pub is_mask_used: bool,
     /// What became of the camera's landmarks; `None` of a camera without any.
     pub landmarks: Option<LandmarkFit>,
 }
@@ -151,14 +153,14 @@ impl Reporter<'_> {
     /// What became of a view, whose mask agrees so well with the pose.
     fn view(&self, found: &Found, view: usize, agreement: Option<Agreement>) -> ViewFit {
         let landmarks = self.landmarks(found, view);
-        let is_used = agreement.is_some() && !found.left_out[view]
-            || landmarks.is_some_and(|landmarks| landmarks.is_used);
+        let is_mask_used = agreement.is_some() && !found.left_out[view];
         let missing = match (agreement, landmarks) {
-            _ if is_used => None,
+            _ if is_mask_used || landmarks.is_some_and(|landmarks| landmarks.is_used) => None,
             (None, None) => Some(Missing::NoHand),
             _ => Some(Missing::Disagrees),
         };
-        ViewFit { missing, overlap: agreement.map(|agreement| agreement.iou), landmarks }
+        let overlap = agreement.map(|agreement| agreement.iou);
+        ViewFit { missing, overlap, is_mask_used, landmarks }
     }
 
     /// What became of a camera's landmarks.
@@ -225,7 +227,8 @@ fn used(views: &[ViewFit]) -> impl Iterator<Item = usize> {
 }
 
 /// A view that shows no hand.
-const NOTHING: ViewFit = ViewFit { missing: Some(Missing::NoHand), overlap: None, landmarks: None };
+const NOTHING: ViewFit =
+    ViewFit { missing: Some(Missing::NoHand), overlap: None, is_mask_used: false, landmarks: None };
 
 /// Whether a camera's picture shows points of the world.
 trait SeesAll {
