@@ -6,7 +6,6 @@ use std::path::Path;
 use std::time::UNIX_EPOCH;
 
 use anyhow::{Context, Result};
-use clap::ValueEnum;
 use phalanx::Maker;
 use serde::{Deserialize, Serialize};
 
@@ -25,32 +24,26 @@ pub(super) struct Identity(Vec<(String, String)>);
 
 impl Identity {
     pub(super) fn of(arguments: &Arguments, source: &Source) -> Result<Self> {
-        let mut parts = vec![
-            ("the program".to_owned(), Maker::here().to_string()),
-            ("the kind of output".to_owned(), format!("{:?}", arguments.kind()?)),
-        ];
-        let side = arguments.side.to_possible_value();
-        let side = side.map_or_else(String::new, |side| side.get_name().to_owned());
-        let rate = arguments.rate.map_or_else(|| "not given".to_owned(), |rate| rate.to_string());
         let segment = &arguments.recording.segment;
-        for (name, value) in [
-            ("--side", side),
-            ("--rate", rate),
-            ("--fit-together", arguments.fitted_together().to_string()),
-            ("--mask, --segment", segment.given()),
-        ] {
-            parts.push((name.to_owned(), value));
-        }
-        let files = [
-            ("--rig", Some(&arguments.rig)),
-            ("--hand", arguments.hand.as_ref()),
-            ("--timestamps", arguments.recording.timestamps.as_ref()),
-            ("the file of --segment", segment.segment.as_ref()),
+        let segmented = Some(segment.given().trim().to_owned()).filter(|given| !given.is_empty());
+        let together = arguments.fit_together.to_string();
+        let together = if arguments.whole_take { "all".to_owned() } else { together };
+        let settings = [
+            ("the program", Some(Maker::here().to_string())),
+            ("the kind of output", Some(format!("{:?}", arguments.kind()?))),
+            ("--side", Some(format!("{:?}", arguments.side).to_lowercase())),
+            ("--rate", arguments.rate.map(|rate| rate.to_string())),
+            ("--fit-together, --whole-take", Some(together)),
+            ("--mask, --segment", segmented),
+            ("--rig", Some(content(&arguments.rig)?)),
+            ("--hand", arguments.hand.as_deref().map(content).transpose()?),
+            ("--timestamps", arguments.recording.timestamps.as_deref().map(content).transpose()?),
+            ("the file of --segment", segment.segment.as_deref().map(content).transpose()?),
         ];
-        for (name, path) in files {
-            let content = path.map_or_else(|| Ok("not given".to_owned()), |path| content(path))?;
-            parts.push((name.to_owned(), content));
-        }
+        let settings = settings.into_iter().map(|(name, value)| {
+            (name.to_owned(), value.unwrap_or_else(|| "not given".to_owned()))
+        });
+        let mut parts: Vec<(String, String)> = settings.collect();
         for (camera, path) in source.recordings() {
             let recording = recording(path).with_context(|| path.display().to_string())?;
             parts.push((format!("the recording of camera '{}'", camera.name), recording));
@@ -63,21 +56,16 @@ impl Identity {
         Ok(Self(parts))
     }
 
-    /// The first thing in which another one differs, in words.
-    pub(super) fn difference(&self, other: &Self) -> Option<String> {
-        let Self(own) = self;
-        let of = |name: &String| {
-            let found = other.0.iter().find(|(found, _)| found == name);
-            found.map_or("absent", |(_, value)| value)
-        };
-        let differs = own.iter().find(|(name, value)| of(name) != value);
-        let (name, value) = match differs {
-            Some((name, value)) => (name, value.as_str()),
-            None => {
-                other.0.iter().find(|pair| !own.contains(pair)).map(|(name, _)| (name, "absent"))?
-            }
-        };
-        Some(format!("{name} is {value}, and was {}", of(name)))
+    /// The first thing in which an earlier one differs, in words.
+    pub(super) fn difference(&self, earlier: &Self) -> Option<String> {
+        let mut names = self.0.iter().chain(&earlier.0).map(|(name, _)| name.as_str());
+        let name = names.find(|name| self.value(name) != earlier.value(name))?;
+        Some(format!("{name} is {}, and was {}", self.value(name), earlier.value(name)))
+    }
+
+    fn value(&self, name: &str) -> &str {
+        let found = self.0.iter().find(|(found, _)| found == name);
+        found.map_or("absent", |(_, value)| value)
     }
 }
 
