@@ -4,8 +4,11 @@ mod calibrations;
 mod desk;
 mod doctors;
 mod estimates;
+#[path = "../installed/mod.rs"]
+mod installed;
 mod landmarks;
 mod manuals;
+mod one_recording;
 mod outputs;
 mod refinements;
 mod refusals;
