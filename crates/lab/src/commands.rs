@@ -8,7 +8,8 @@ use clap::Subcommand;
 use crate::bench::{flat_memory, peers, performance};
 use crate::data::fixtures;
 use crate::eval::{
-    ablation, doubts, global_pose, held_out, hypotheses, presets, selection, subsets, table1,
+    ablation, doubts, global_pose, held_out, hypotheses, presets, reliability, selection, subsets,
+    table1,
 };
 use crate::figures::pictures;
 use crate::models::{skin_model, wrist_model};
@@ -36,6 +37,8 @@ pub enum Command {
     EvalGlobal(global_pose::Arguments),
     /// Test one model on any of its cameras, beside models for just these: docs/results/subsets.md.
     EvalSubsets(subsets::Arguments),
+    /// Find out how often the truth is as near as deviations promise: docs/results/reliability.md.
+    Reliability(reliability::Arguments),
     /// Find out which wrong answers are doubted, and for which cause: docs/results/doubts.md.
     Doubts(doubts::Arguments),
     /// Evaluate real takes, by cameras used, input and method.
@@ -86,6 +89,7 @@ impl Command {
             Self::EvalHeldOut(arguments) => return held_out::run(arguments),
             Self::EvalGlobal(arguments) => global_pose::run(arguments)?,
             Self::EvalSubsets(arguments) => subsets::run(arguments)?,
+            Self::Reliability(arguments) => reliability::run(arguments)?,
             Self::Doubts(arguments) => doubts::run(arguments)?,
             Self::EvalReal(arguments) => real::run(arguments)?,
             Self::Selection(arguments) => selection::run(arguments)?,

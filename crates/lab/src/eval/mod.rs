@@ -8,6 +8,8 @@ pub(crate) mod hypotheses;
 pub(crate) mod orientation;
 pub(crate) mod presets;
 pub(crate) mod refining;
+pub(crate) mod reliability;
+pub(crate) mod seen;
 pub(crate) mod selection;
 pub(crate) mod subsets;
 pub(crate) mod table1;
