@@ -107,7 +107,7 @@ impl LearntMetric {
     }
 
     /// The same for so many of a rig's cameras. They leave more open, so that fewer Gaussians tell as much: a
-    /// quarter of them through one of three and half through two, which errs as all of them do to within 1 %
+    /// quarter of them through one of three and half through two, which errs as all of them do to within 4 %
     /// and 6 %.
     pub(crate) fn of_fewer_views(&self, views: usize, cameras: usize) -> Self {
         let fewer = |centres: usize| (centres * views).div_ceil(cameras + 1);
