@@ -21,7 +21,7 @@ pub struct PoseFit {
     /// The pose.
     pub pose: Pose,
     /// The posterior covariance of the prior's numbers ([`PosePrior::dofs`]), column after column,
-    /// from the curvature of the energy.
+    /// from the curvature of the energy, hand and cameras being unknown where they were fitted.
     pub covariance: Vec<f64>,
     /// Intersection over union of the drawn and the observed silhouette, for each view.
     pub ious: Vec<f64>,
@@ -126,10 +126,11 @@ impl PoseFitSettings {
         views: &mut [Vec<ViewMatcher>],
     ) -> Result<PoseFit> {
         let ious = ious(problem, &best.state, views)?.swap_remove(0);
+        let (_, shared_prior) = problem.shared_prior(&best.state.shared);
         let numbers = problem.frames[0].prior.dofs().len();
         Ok(PoseFit {
             pose: best.state.frames[0].pose,
-            covariance: covariance(&best.frames[0], numbers).ok_or_else(|| {
+            covariance: covariance(&best.frames[0], &shared_prior, numbers).ok_or_else(|| {
                 let reason = "leaves directions open that the silhouettes do not tell".to_owned();
                 Error::Precision { reason }
             })?,

@@ -243,12 +243,17 @@ pub(crate) fn shared_covariance(
     Some(reduced.llt(Side::Lower).ok()?.inverse())
 }
 
-/// The covariance of the first `numbers` unknowns of a frame, with everything shared being known,
-/// column after column: of the inverse of its Hessian.
-pub(crate) fn covariance(frame: &NormalEquations, numbers: usize) -> Option<Vec<f64>> {
-    let n = frame.own;
-    let own = Mat::from_fn(n, n, |i, j| frame.own_hessian[i.min(j) * n + i.max(j)]);
-    let factor = own.llt(Side::Lower).ok()?;
-    let inverse = factor.inverse();
+/// The covariance of the first `numbers` unknowns of a frame, column after column: of the inverse of its Hessian, all
+/// others being unknown too. `shared_prior` holds the Hessians of what is known of those that frames share.
+pub(crate) fn covariance(
+    frame: &NormalEquations,
+    shared_prior: &[GaussianPenalty],
+    numbers: usize,
+) -> Option<Vec<f64>> {
+    let mut whole = frame.whole_hessian();
+    for (k, known) in (frame.own..).zip(shared_prior) {
+        whole[(k, k)] += known.hessian;
+    }
+    let inverse = whole.llt(Side::Lower).ok()?.inverse();
     Some((0..numbers * numbers).map(|k| inverse[(k % numbers, k / numbers)]).collect())
 }
