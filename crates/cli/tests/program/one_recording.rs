@@ -14,7 +14,8 @@ use rayon::prelude::*;
 use crate::desk::run;
 use crate::installed;
 
-const FRAMES: usize = 300;
+/// As long as the fingers take to close and open once.
+const FRAMES: usize = 90;
 const RATE: f64 = 30.0;
 
 /// The most by which angles may differ in the mean, degrees: of the same photographs as video and as
@@ -91,7 +92,7 @@ fn apart(one: &Take, other: &Take) -> f64 {
 }
 
 #[test]
-#[ignore = "tracks 900 moments; installs ffmpeg from Debian"]
+#[ignore = "tracks 270 moments; installs ffmpeg from Debian"]
 fn videos_pictures_and_masks_give_the_same_angles() {
     let Some(()) = installed::program("ffmpeg", &["ffmpeg"]) else { return };
     // Left there to be looked at.
