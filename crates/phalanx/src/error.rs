@@ -158,13 +158,15 @@ pub enum Error {
     #[error(
         "{lost} of {scenes} training scenes cannot be used, more than {} %: {losses}; check where the rig's \
          working volume and cameras are",
-        100.0 * crate::Losses::MOST
+        100.0 * most
     )]
     TooManyLost {
         /// How many are lost.
         lost: usize,
         /// Of how many.
         scenes: usize,
+        /// The largest share that is borne.
+        most: f64,
         /// The cameras and reasons.
         losses: String,
     },

@@ -22,8 +22,11 @@ mod window;
 pub use checking::doubt::{Cause, ViewDoubt};
 pub use checking::usual::UsualExplanation;
 pub use error::{Error, Result};
-pub use estimator::error_model::{ErrorModel, Hypothesis};
-pub use estimator::estimate::{Estimate, Estimator, Workspace};
+pub use estimator::answering::Workspace;
+pub use estimator::error_model::ErrorModel;
+pub use estimator::estimate::Estimate;
+pub use estimator::hypotheses::Hypothesis;
+pub use estimator::model::Estimator;
 pub use estimator::observation::{Observation, ObservedView};
 pub use estimator::placement::PlacementErrors;
 pub use estimator::regression::FittedRegressor;
@@ -31,6 +34,7 @@ pub use features::describer::{
     Describer, OrientationRule, ViewConfig, WORKING_SIZE, working_camera,
 };
 pub use features::descriptor::{Descriptor, ExtraFeatures, describe_scenes};
+pub use features::samples::{descriptors, targets};
 pub use fitting::{
     Delay, FitDoubt, FrameFit, LandmarkFit, Missing, Proportions, TakeFit, TakeFrame, TakeSettings,
     TrackSettings, TrackedFrame, Tracker, TrackerState, ViewFit, VolumeEstimate, estimate_volume,
@@ -53,11 +57,11 @@ pub use synthesis::scene::{FixedPoses, Scene, SceneSource, SceneSubset, SceneVie
 pub use synthesis::scene_describer::{
     PoseContexts, SceneDescriber, describe_each, draw_silhouette,
 };
+pub use training::cameras::Cameras;
 pub use training::maker::Maker;
 pub use training::partial::PartialTraining;
-pub use training::plan::Cameras;
 pub use training::preset::Preset;
-pub use training::recipe::{Encoding, Training, descriptors, targets};
+pub use training::recipe::{Encoding, Training};
 pub use training::regressor::{LearntMetric, NetworkTraining, RegressorConfig};
 pub use training::shard::Shard;
 pub use training::trainer::{Cost, Trainer};

@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Formatter};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// Scenes that a training could not use, by camera and reason.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -95,7 +95,7 @@ impl Losses {
         if lost as f64 <= Self::MOST * scenes as f64 {
             return Ok(());
         }
-        Err(Error::TooManyLost { lost, scenes, losses: self.to_string() })
+        Err(Error::TooManyLost { lost, scenes, most: Self::MOST, losses: self.to_string() })
     }
 }
 

@@ -1,6 +1,6 @@
 //! How long work tells its caller how far it is.
 
-use crate::Losses;
+use crate::losses::Losses;
 
 /// Receives the progress of long work, from any thread.
 pub trait Progress: Sync {

@@ -10,8 +10,10 @@ use phalanx_refine::{
 use phalanx_segmentation::Silhouette;
 
 use crate::error::{Error, Result};
-use crate::estimator::error_model::Hypothesis;
-use crate::estimator::estimate::{Estimate, Estimator, Workspace};
+use crate::estimator::answering::Workspace;
+use crate::estimator::estimate::Estimate;
+use crate::estimator::hypotheses::Hypothesis;
+use crate::estimator::model::Estimator;
 use crate::estimator::observation::Observation;
 use crate::estimator::placement::PLACED;
 use crate::features::describer::working_camera;

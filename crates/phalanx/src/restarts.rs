@@ -3,7 +3,10 @@
 use phalanx_hand::{Dof, Pose, Unit};
 use phalanx_refine::{PoseFit, PoseFitSettings, SilhouetteObservation};
 
-use crate::{Estimate, Hypothesis, Refiner, Result};
+use crate::error::Result;
+use crate::estimator::estimate::Estimate;
+use crate::estimator::hypotheses::Hypothesis;
+use crate::refiner::Refiner;
 
 /// Least spread of a hypothesis in refinement, as a share of the estimate's standard deviation: a
 /// hypothesis that few errors stand behind is not thereby certain.

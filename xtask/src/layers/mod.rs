@@ -13,21 +13,13 @@ use anyhow::{Context, Result, ensure};
 use modules::Modules;
 use phalanx_lab::files;
 
-/// Crates that do not keep to this yet, each of which is to leave this list.
-const NOT_YET: [&str; 1] = ["phalanx"];
-
 pub(crate) fn run() -> Result<()> {
     let mut problems = Vec::new();
     for folder in crates()? {
         let name = folder.file_name().context("a folder has a name")?.to_string_lossy();
         let modules = Modules::read(&folder.join("src"))?;
-        let found: Vec<String> =
-            modules.root_imports().into_iter().chain(modules.circle()).collect();
-        match (NOT_YET.contains(&&*name), found.is_empty()) {
-            (false, _) => problems.extend(found.iter().map(|problem| format!("{name}: {problem}"))),
-            (true, false) => eprintln!("{name}: {} problems, known", found.len()),
-            (true, true) => eprintln!("{name}: no problem; take it from NOT_YET"),
-        }
+        let found = modules.root_imports().into_iter().chain(modules.circle());
+        problems.extend(found.map(|problem| format!("{name}: {problem}")));
     }
     ensure!(problems.is_empty(), "arrows that do not go down:\n  {}", problems.join("\n  "));
     Ok(())

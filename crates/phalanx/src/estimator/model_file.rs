@@ -11,7 +11,7 @@ use crate::checking::usual::UsualExplanation;
 use crate::error::Result;
 use crate::estimator::container::Container;
 use crate::estimator::error_model::ErrorModel;
-use crate::estimator::estimate::Estimator;
+use crate::estimator::model::Estimator;
 use crate::estimator::placement::PlacementErrors;
 use crate::estimator::regression::FittedRegressor;
 use crate::estimator::subset_regression::SubsetRegression;

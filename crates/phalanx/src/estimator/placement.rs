@@ -10,10 +10,27 @@ use crate::estimator::estimate::Estimate;
 use crate::estimator::observation::ObservedView;
 use crate::localize::global_pose::initial_global;
 use crate::synthesis::sampler::LEAN_DEG;
-use crate::window::PicturedHand;
+use crate::window::{Framing, PicturedHand};
 
 /// What a hand's place in its windows tells.
 pub(crate) const PLACED: [Dof; 5] = [Dof::ThetaX, Dof::ThetaY, Dof::TX, Dof::TY, Dof::TZ];
+
+/// The numbers that windows tell where they are looked through, and regression does not.
+pub(crate) fn placed(framing: Framing) -> &'static [Dof] {
+    match framing {
+        Framing::Picture => &[],
+        Framing::Window => &PLACED,
+    }
+}
+
+/// A pose without what windows tell.
+pub(crate) fn unplaced(pose: &Pose, framing: Framing) -> Pose {
+    let mut pose = *pose;
+    for &dof in placed(framing) {
+        pose[dof] = Pose::REST[dof];
+    }
+    pose
+}
 
 /// Standard deviations of the θ_X, θ_Y, t_X, t_Y and t_Z of a hand, radians and mm.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

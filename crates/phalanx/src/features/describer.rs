@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::features::outline::{chain, trace_outline};
 use crate::images::picture::Picture;
-use crate::window::Framing;
+use crate::window::framing::Framing;
 
 /// The size at which pictures are described, width and height: the paper's 90 × 120 pixels.
 pub const WORKING_SIZE: (u32, u32) = (120, 90);

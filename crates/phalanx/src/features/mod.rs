@@ -4,3 +4,4 @@ pub(crate) mod describer;
 pub(crate) mod descriptor;
 pub(crate) mod occupancy;
 pub(crate) mod outline;
+pub(crate) mod samples;

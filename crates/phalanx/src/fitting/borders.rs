@@ -4,7 +4,7 @@ use phalanx_refine::{BoundaryNoise, BoundaryResiduals};
 use rayon::prelude::*;
 
 use super::frame_fit::{Found, FrameFitter};
-use crate::Result;
+use crate::error::Result;
 
 /// Frames that borders are looked at in.
 const FRAMES: usize = 24;

@@ -12,7 +12,8 @@ use super::observation::{Sight, fitted_hand, length_mm};
 use super::starts;
 use super::take_frame::TakeFrame;
 use super::weights::ViewWeights;
-use crate::{Error, NoProgress, Progress, Result};
+use crate::error::{Error, Result};
+use crate::progress::{NoProgress, Progress};
 
 /// Frames from which it is found where the hand works.
 const KEY_FRAMES: usize = 12;

@@ -12,7 +12,7 @@ use super::observation::{self, Sight};
 use super::points::{CameraPoints, palm_frames};
 use super::starts;
 use super::weights::ViewWeights;
-use crate::Result;
+use crate::error::Result;
 use crate::localize::{BoundingSphere, HandCrop, Placement};
 
 /// Palm directions about the forearm that are tried where none is known: 45° apart, half of which steps

@@ -4,7 +4,7 @@ use phalanx_hand::{Dof, Pose};
 use phalanx_refine::PosePrior;
 
 use super::frame_fit::Found;
-use crate::Result;
+use crate::error::Result;
 
 /// Standard deviations of how far each joint angle moves from one frame to the next, radians; infinite for
 /// where the hand is and how it is turned, of which silhouettes tell enough.

@@ -8,8 +8,8 @@ use phalanx_segmentation::{HandDetection, HandDetector, Mask};
 use super::points::CameraPoints;
 use super::take_frame::TakeFrame;
 
+use crate::error::{Error, Result};
 use crate::localize::{Arm, BoundingSphere, Detections, HandCrop, Placement, associate};
-use crate::{Error, Result};
 
 /// Placements of a frame that are tried.
 const PLACEMENTS: usize = 8;

@@ -9,7 +9,8 @@ use super::motion::Motion;
 use super::observation::Sight;
 use super::take_frame::TakeFrame;
 use super::views;
-use crate::{Progress, Result};
+use crate::error::Result;
+use crate::progress::Progress;
 
 /// How many frames before and after a frame say where it may be.
 const NEIGHBOURS: usize = 1;

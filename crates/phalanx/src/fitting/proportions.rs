@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::consensus::evenly;
 use super::frame_fit::{Found, FrameFitter, Seen};
 use super::views;
-use crate::Result;
+use crate::error::Result;
 
 /// Frames that the hand is learnt from, and as many that it is tested on.
 const LEARNT_FROM: usize = 16;

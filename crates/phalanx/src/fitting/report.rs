@@ -11,7 +11,7 @@ use super::misfit;
 use super::proportions::KnownHand;
 use super::starts;
 use super::views;
-use crate::Result;
+use crate::error::Result;
 
 /// A fitted frame.
 #[derive(Debug, Clone, PartialEq)]

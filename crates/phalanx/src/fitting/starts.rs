@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use phalanx_hand::{Digit, Dof, HandShape, Pose, Side};
 use phalanx_refine::PosePrior;
 
-use crate::Result;
+use crate::error::Result;
 use crate::localize::Placement;
 use crate::synthesis::postures::coupled;
 

@@ -18,7 +18,8 @@ use super::starts;
 use super::take_frame::TakeFrame;
 use super::views;
 use super::weights::ViewWeights;
-use crate::{Error, Progress, Result};
+use crate::error::{Error, Result};
+use crate::progress::Progress;
 
 /// How takes are fitted.
 #[derive(Debug, Clone, PartialEq)]

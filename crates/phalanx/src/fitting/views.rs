@@ -4,7 +4,7 @@ use phalanx_refine::Agreement;
 
 use super::frame_fit::{Found, FrameFitter, Postures};
 use super::misfit;
-use crate::Result;
+use crate::error::Result;
 
 /// How well each view of a frame agrees with its fit, also those that are left out; `None` of a view
 /// that sees nothing of it.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use phalanx_camera::{Ray, triangulate};
 
-use super::Detections;
+use crate::localize::detect::Detections;
 use crate::localize::sighting::{Sighting, arm};
 
 /// A hand in space: where its wrist is, and which way its arm points.

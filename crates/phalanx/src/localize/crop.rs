@@ -7,8 +7,8 @@ use phalanx_segmentation::Mask;
 
 use super::arm::Arm;
 use super::exits::Exits;
+use crate::error::{Error, Result};
 use crate::window::resample;
-use crate::{Error, Result};
 
 /// Side of a crop, px: with [`REACH`] a pixel is about two millimetres of an adult's hand, a quarter of
 /// a finger.

@@ -1,5 +1,7 @@
 //! From scenes to an estimator, whole or in shards.
 
+pub(crate) mod cameras;
+pub(crate) mod feature_transform;
 pub(crate) mod maker;
 pub(crate) mod partial;
 pub(crate) mod plan;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::estimator::container::Container;
-use crate::estimator::estimate::Estimator;
+use crate::estimator::model::Estimator;
 use crate::features::descriptor::describe_scenes;
 use crate::losses::Losses;
 use crate::progress::Progress;
@@ -321,7 +321,7 @@ mod tests {
     use super::*;
     use crate::progress::NoProgress;
     use crate::synthesis::scene::FixedPoses;
-    use crate::training::plan::FeatureTransform;
+    use crate::training::feature_transform::FeatureTransform;
     use crate::training::regressor::RegressorConfig;
 
     fn part() -> PartialTraining {

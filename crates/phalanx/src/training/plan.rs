@@ -3,18 +3,21 @@
 use faer::{Mat, MatRef};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape};
-use phalanx_rvm::{BasisSpec, BlockPca, LearnedMetric, PilotSample, random_subset};
+use phalanx_rvm::{BasisSpec, PilotSample, random_subset};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::features::descriptor::{Descriptor, describe_scenes};
+use crate::features::samples::targets;
 use crate::losses::Losses;
 use crate::progress::Progress;
 use crate::synthesis::scene::SUBSET_SEED;
 use crate::synthesis::scene::{SceneSource, SceneSubset};
 use crate::synthesis::scene_describer::describe_each;
-use crate::training::recipe::{Training, targets};
+use crate::training::cameras::Cameras;
+use crate::training::feature_transform::FeatureTransform;
+use crate::training::recipe::Training;
 use crate::training::regressor::{Kept, RegressorConfig, columns_of};
 
 /// What every part of a training must know before it begins; each finds it by itself.
@@ -31,28 +34,6 @@ pub(crate) struct TrainingPlan {
     pub(crate) pilot: Vec<usize>,
     pub(crate) pilot_x: Vec<f64>,
     pilot_y: Vec<f64>,
-}
-
-/// Which cameras an estimator answers from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Cameras {
-    /// Any of the rig's, if it is learnt with a [`LearntMetric`](crate::LearntMetric) or a
-    /// [`NetworkTraining`](crate::NetworkTraining); else all. It is the same estimator of all.
-    #[default]
-    Any,
-    /// All of them, and no fewer. That is learnt in less time.
-    All,
-}
-
-/// What the regressor reads of a scene.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) enum FeatureTransform {
-    /// Its descriptor.
-    Whole,
-    /// The descriptor's principal components.
-    Components(BlockPca),
-    /// What learnt distances make of it. They were learnt between its principal components.
-    Metric { metric: LearnedMetric, components: BlockPca },
 }
 
 impl Training {
@@ -103,26 +84,6 @@ impl Training {
             pilot_y: numbers(&y),
             pilot: chosen.into_iter().map(|place| pilot[place]).collect(),
         })
-    }
-}
-
-impl FeatureTransform {
-    /// What is read of descriptors, a column each.
-    pub(crate) fn of(&self, x: Mat<f64>) -> Result<Mat<f64>> {
-        Ok(match self {
-            Self::Whole => x,
-            Self::Components(components) => components.apply(x.as_ref())?,
-            Self::Metric { metric, .. } => metric.projection.apply(x.as_ref())?,
-        })
-    }
-
-    /// How many numbers are read of a descriptor of this length.
-    fn count(&self, dim: usize) -> usize {
-        match self {
-            Self::Whole => dim,
-            Self::Components(components) => components.outputs(),
-            Self::Metric { metric, .. } => metric.projection.outputs(),
-        }
     }
 }
 

@@ -8,7 +8,7 @@ use phalanx_rvm::{
 };
 
 use crate::features::describer::OrientationRule;
-use crate::training::plan::Cameras;
+use crate::training::cameras::Cameras;
 use crate::training::recipe::{Encoding, Training};
 use crate::training::regressor::{LearntMetric, NetworkTraining, RegressorConfig};
 use crate::window::Framing;

@@ -1,20 +1,18 @@
 //! Learning an estimator for a rig and a hand.
 
-use faer::Mat;
 use phalanx_camera::Rig;
-use phalanx_hand::{Dof, HandShape, Pose};
-use phalanx_multiview::{CodebookTrainer, Scratch, ViewEncoders};
+use phalanx_hand::{HandShape, Pose};
+use phalanx_multiview::CodebookTrainer;
 use phalanx_rvm::{Bandwidth, KernelRidge, Regularisation};
-use rayon::prelude::*;
 
 use crate::error::{Error, Result};
-use crate::estimator::estimate::Estimator;
+use crate::estimator::model::Estimator;
 use crate::features::describer::{OrientationRule, ViewConfig};
 use crate::features::descriptor::{Descriptor, ExtraFeatures};
 use crate::progress::Progress;
 use crate::synthesis::scene::FixedPoses;
 use crate::synthesis::scene_describer::PoseContexts;
-use crate::training::plan::Cameras;
+use crate::training::cameras::Cameras;
 use crate::training::regressor::RegressorConfig;
 use crate::training::shard::Shard;
 use crate::window::Framing;
@@ -135,35 +133,4 @@ impl Training {
         };
         Ok(Descriptor::new(view_config, encoders, features))
     }
-}
-
-/// The joined descriptors of all samples, K × I.
-///
-/// # Errors
-/// What the codebooks say of the contexts.
-pub fn descriptors<S, V>(views: &ViewEncoders, contexts: &[S]) -> Result<Mat<f64>>
-where
-    S: AsRef<[V]> + Sync,
-    V: AsRef<[f32]>,
-{
-    let mut x = Mat::zeros(views.dim(), contexts.len());
-    let columns: Vec<Result<Vec<f64>>> = contexts
-        .par_iter()
-        .map_init(Scratch::default, |scratch, sample| {
-            let mut column = vec![0.0; views.dim()];
-            views.describe(sample.as_ref(), scratch, &mut column)?;
-            Ok(column)
-        })
-        .collect();
-    for (i, column) in columns.into_iter().enumerate() {
-        for (k, value) in column?.into_iter().enumerate() {
-            x[(k, i)] = value;
-        }
-    }
-    Ok(x)
-}
-
-/// The poses as targets, 28 × I.
-pub fn targets(poses: &[Pose]) -> Mat<f64> {
-    Mat::from_fn(Dof::COUNT, poses.len(), |dof, i| poses[i].0[dof])
 }

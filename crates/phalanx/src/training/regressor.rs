@@ -16,7 +16,7 @@ use crate::estimator::subset_regression::{SubsetRegression, SubsetRegressors};
 use crate::features::descriptor::Descriptor;
 use crate::progress::Progress;
 use crate::synthesis::scene::SUBSET_SEED;
-use crate::training::plan::FeatureTransform;
+use crate::training::feature_transform::FeatureTransform;
 
 /// Samples that are added to sums at a time.
 const BATCH: usize = 4096;

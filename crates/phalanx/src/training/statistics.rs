@@ -11,7 +11,8 @@ use crate::error::{Error, Result};
 use crate::estimator::regression::FittedRegressor;
 use crate::estimator::subset_regression::SubsetRegression;
 use crate::progress::Progress;
-use crate::training::plan::{FeatureTransform, TrainingPlan};
+use crate::training::feature_transform::FeatureTransform;
+use crate::training::plan::TrainingPlan;
 use crate::training::regressor::Kept;
 use crate::training::samples::Samples;
 

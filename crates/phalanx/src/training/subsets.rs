@@ -17,7 +17,9 @@ use crate::estimator::subset_regression::{
 };
 use crate::progress::Progress;
 use crate::synthesis::scene::SUBSET_SEED;
-use crate::training::plan::{Cameras, FeatureTransform, TrainingPlan};
+use crate::training::cameras::Cameras;
+use crate::training::feature_transform::FeatureTransform;
+use crate::training::plan::TrainingPlan;
 use crate::training::regressor::{LearntMetric, RegressorConfig, columns_of};
 use crate::training::samples::Samples;
 use crate::training::shard::BLOCK;

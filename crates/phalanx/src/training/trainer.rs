@@ -4,12 +4,12 @@ use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose};
 
 use crate::error::Result;
-use crate::estimator::estimate::Estimator;
+use crate::estimator::model::Estimator;
 use crate::progress::Progress;
 use crate::synthesis::augmentation::Augmentation;
 use crate::synthesis::sampler::{PoseSource, SceneSampler};
+use crate::training::cameras::Cameras;
 use crate::training::partial::{ErrorScenes, PartialTraining};
-use crate::training::plan::Cameras;
 use crate::training::preset::Preset;
 use crate::training::recipe::Training;
 use crate::training::shard::Shard;

@@ -6,9 +6,12 @@ use phalanx_hand::Primitive;
 use phalanx_render::Renderer;
 use phalanx_segmentation::{Cleanup, Mask, Silhouette, Workspace, clean_into, downsample_mask};
 
-use super::{Window, WindowFinder, resample};
+use crate::error::{Error, Result};
+use crate::features::describer::{Describer, WORKING_SIZE};
 use crate::synthesis::augmentation::make_ragged;
-use crate::{Describer, Error, Result, WORKING_SIZE};
+use crate::window::finder::WindowFinder;
+use crate::window::resample;
+use crate::window::virtual_camera::Window;
 
 /// The longest side of a picture in which hands are found, px: a [`HandDetector`] looks at no more than
 /// 200 cells along a hand and its arm.

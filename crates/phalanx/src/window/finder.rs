@@ -4,8 +4,10 @@ use glam::DVec3;
 use phalanx_camera::Camera;
 use phalanx_segmentation::{Cleanup, HandDetector, Mask, Silhouette, WristModel};
 
-use super::{Window, choice};
-use crate::{Describer, Error, Result};
+use crate::error::{Error, Result};
+use crate::features::describer::Describer;
+use crate::window::choice;
+use crate::window::virtual_camera::Window;
 
 /// Finds the hand in all cameras' masks, one scene after another in the same memory.
 #[derive(Debug, Clone, Default)]

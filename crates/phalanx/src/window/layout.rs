@@ -4,7 +4,8 @@ use glam::{DVec2, DVec3};
 use phalanx_camera::{Camera, Intrinsics};
 use phalanx_segmentation::HandDetection;
 
-use crate::{Error, Result, WORKING_SIZE};
+use crate::error::{Error, Result};
+use crate::features::describer::WORKING_SIZE;
 
 /// The share of the window that the hand fills, as in the paper's data (§ 2).
 const FILL: f64 = 0.2;

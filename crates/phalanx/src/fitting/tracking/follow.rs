@@ -7,7 +7,7 @@ use phalanx_refine::{Evidence, Level, PoseFit, PoseFitSettings};
 use super::motion::{Motion, NUMBERS};
 use super::noise::MotionNoise;
 use super::seen::Seen;
-use crate::Result;
+use crate::error::Result;
 use crate::fitting::frame_fit::{Found, FrameFitter, views_used};
 use crate::fitting::{consensus, frame_fit, misfit, starts};
 

@@ -9,7 +9,7 @@ use phalanx_refine::PosePrior;
 use serde::{Deserialize, Serialize};
 
 use super::noise::MotionNoise;
-use crate::Result;
+use crate::error::Result;
 use crate::fitting::starts;
 
 /// The numbers of a pose.

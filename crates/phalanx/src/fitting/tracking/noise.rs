@@ -3,7 +3,6 @@
 use phalanx_hand::Dof;
 use serde::{Deserialize, Serialize};
 
-use super::motion::NUMBERS;
 use crate::fitting::motion::FREEDOM;
 
 /// Which numbers are learnt together: the digits and the wrist, the hand's turn, its place.
@@ -52,7 +51,7 @@ pub(super) struct MotionNoise {
     /// The same before anything was learnt.
     first_unit: f64,
     /// What the frame before told that had not been predicted, in deviations.
-    before: [f64; NUMBERS],
+    before: [f64; Dof::COUNT],
 }
 
 fn group(number: usize) -> usize {
@@ -66,16 +65,16 @@ fn group(number: usize) -> usize {
 impl MotionNoise {
     /// Nothing is learnt yet; a unit of a fit's energy counts `unit`.
     pub(super) fn new(unit: f64) -> Self {
-        Self { density: USUAL_DENSITY, unit, first_unit: unit, before: [0.0; NUMBERS] }
+        Self { density: USUAL_DENSITY, unit, first_unit: unit, before: [0.0; Dof::COUNT] }
     }
 
     /// The speed of each number, a standard deviation, before anything is known of it.
-    pub(super) fn usual_speeds() -> [f64; NUMBERS] {
+    pub(super) fn usual_speeds() -> [f64; Dof::COUNT] {
         std::array::from_fn(|k| USUAL_SPEEDS[group(k)])
     }
 
     /// The density of every number.
-    pub(super) fn densities(&self) -> [f64; NUMBERS] {
+    pub(super) fn densities(&self) -> [f64; Dof::COUNT] {
         std::array::from_fn(|k| self.density[group(k)])
     }
 
@@ -86,7 +85,10 @@ impl MotionNoise {
 
     /// How many times the variance of each number must be if its change, `offset`, is one of a process with
     /// heavy tails (the weights of Student's distribution; Lange, Little and Taylor 1989).
-    pub(super) fn inflation(offset: &[f64; NUMBERS], variances: &[f64; NUMBERS]) -> [f64; NUMBERS] {
+    pub(super) fn inflation(
+        offset: &[f64; Dof::COUNT],
+        variances: &[f64; Dof::COUNT],
+    ) -> [f64; Dof::COUNT] {
         std::array::from_fn(|k| {
             let square = offset[k] * offset[k] / variances[k];
             ((FREEDOM + square) / (FREEDOM + 1.0)).max(1.0)
@@ -101,14 +103,14 @@ impl MotionNoise {
     /// How large it is on the whole, robustly, says how much all variances are.
     pub(super) fn learn(
         &mut self,
-        offset: &[f64; NUMBERS],
-        before: &[f64; NUMBERS],
-        after: &[f64; NUMBERS],
+        offset: &[f64; Dof::COUNT],
+        before: &[f64; Dof::COUNT],
+        after: &[f64; Dof::COUNT],
     ) {
-        let mut told = [0.0; NUMBERS];
-        let mut squares = Vec::with_capacity(NUMBERS);
+        let mut told = [0.0; Dof::COUNT];
+        let mut squares = Vec::with_capacity(Dof::COUNT);
         let (mut products, mut counts) = ([0.0; GROUPS], [0.0; GROUPS]);
-        for k in 0..NUMBERS {
+        for k in 0..Dof::COUNT {
             let variance = before[k] - after[k];
             if variance < TOLD * before[k] {
                 continue;

@@ -3,7 +3,7 @@
 use glam::DAffine3;
 use phalanx_hand::{Dof, HandShape};
 
-use crate::Result;
+use crate::error::Result;
 use crate::fitting::frame_fit::{Found, FrameFitter};
 use crate::fitting::proportions::{self, HandEvidence, KnownHand};
 

@@ -3,7 +3,7 @@
 use glam::DAffine3;
 use phalanx_camera::Camera;
 
-use crate::Result;
+use crate::error::Result;
 use crate::fitting::frame_fit::{Found, FrameFitter, Postures};
 use crate::fitting::misfit;
 use crate::fitting::observation::Sight;

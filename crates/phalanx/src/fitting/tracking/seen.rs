@@ -3,11 +3,11 @@
 use phalanx_camera::Camera;
 use phalanx_segmentation::{Cleanup, HandDetector, Mask};
 
+use crate::error::{Error, Result};
 use crate::fitting::observation::crop_of;
 use crate::fitting::points::CameraPoints;
 use crate::fitting::take_frame::TakeFrame;
 use crate::localize::{BoundingSphere, HandCrop};
-use crate::{Error, Result};
 
 /// The components of a frame's masks that are as large as a hand.
 pub(super) struct Seen {

@@ -17,6 +17,7 @@ use super::recent::Recent;
 use super::recover::recover;
 use super::seen::Seen;
 use super::state::TrackerState;
+use crate::error::{Error, Result};
 use crate::fitting::frame_fit::{Found, FrameFitter};
 use crate::fitting::knowledge::ViewKnowledge;
 use crate::fitting::observation::fitted_hand;
@@ -25,7 +26,6 @@ use crate::fitting::report::{FrameFit, Reporter};
 use crate::fitting::take::{Known, Proportions, TakeFit};
 use crate::fitting::take_frame::TakeFrame;
 use crate::fitting::{consensus, misfit, starts, views};
-use crate::{Error, Result};
 
 /// How a hand is tracked.
 #[derive(Debug, Clone, PartialEq)]
