@@ -2,7 +2,7 @@
 
 mod markdown;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -10,9 +10,9 @@ use phalanx_cli::files::Output;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The folder that the pages go to, or with --markdown the file.
-    #[arg(value_name = "DIR")]
-    out: PathBuf,
+    /// The folder that the pages go to, or with --markdown the file; without one that page is printed.
+    #[arg(value_name = "DIR", required_unless_present = "markdown")]
+    out: Option<PathBuf>,
     /// Write one page in Markdown with all commands, in place of a manual page for each.
     #[arg(long)]
     markdown: bool,
@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
 
 /// Writes the manual of the program.
 pub(crate) fn run(arguments: &Arguments, program: clap::Command) -> Result<()> {
-    let out = &arguments.out;
+    let out = arguments.out.as_deref().unwrap_or(Path::new("-"));
     let mut program = program.disable_help_subcommand(true);
     if arguments.markdown {
         // Gives each subcommand its whole name.

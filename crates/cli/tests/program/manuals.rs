@@ -53,12 +53,13 @@ fn every_command_has_a_manual_page() {
     let outcome = run(folder.path(), ["man", "nowhere"]);
     assert_eq!(outcome.code, Some(2));
     assert!(outcome.err.contains("nowhere: there is no such folder"), "{}", outcome.err);
+    assert_eq!(run(folder.path(), ["man"]).code, Some(2));
 }
 
 #[test]
 fn the_page_of_all_commands_is_as_the_program_says() {
     let folder = TempDir::new().unwrap();
-    let outcome = run(folder.path(), ["man", "--markdown", "-"]);
+    let outcome = run(folder.path(), ["man", "--markdown"]);
     assert_eq!(outcome.code, Some(0), "{}", outcome.err);
     for command in COMMANDS {
         let name = command.replacen("rig-", "rig ", 1);
