@@ -62,15 +62,76 @@ fn reference(path: &Path) -> Result<Reference> {
     read().with_context(|| path.display().to_string())
 }
 
-/// Each compared number or joint with its unit and what a file's number is of ours.
-fn compared(evaluation: &Evaluation) -> Vec<(&'static str, &'static str, f64, &Scores)> {
-    let dofs = Dof::ALL.into_iter().zip(&evaluation.dofs).map(|(dof, scores)| match dof.unit() {
-        Unit::Angle => (dof.name(), "deg", 1_f64.to_degrees(), scores),
-        Unit::Length => (dof.name(), "mm", 1.0, scores),
+/// What was compared, in the units of files.
+struct Compared<'a> {
+    name: &'static str,
+    unit: &'static str,
+    /// The mean error; of a joint along X, Y and Z.
+    bias: Vec<f64>,
+    mean: f64,
+    rms: f64,
+    count: usize,
+    /// The share found within each level, where there are deviations.
+    found: Option<&'a [f64]>,
+}
+
+impl<'a> Compared<'a> {
+    /// `scale` is a file's number over ours.
+    fn new<const N: usize>(
+        name: &'static str,
+        (unit, scale): (&'static str, f64),
+        scores: &'a Scores<N>,
+    ) -> Option<Self> {
+        (scores.count > 0).then(|| Self {
+            name,
+            unit,
+            bias: scores.bias.map(|bias| bias * scale).to_vec(),
+            mean: scores.mean * scale,
+            rms: scores.rms * scale,
+            count: scores.count,
+            found: (scores.promised > 0).then_some(&scores.coverage),
+        })
+    }
+
+    fn line(&self) -> String {
+        let Self { name, unit, mean, rms, .. } = self;
+        let bias = self.bias.iter().map(|bias| format!("{bias:>8.2}")).collect::<Vec<_>>().concat();
+        let share = |level: usize| match self.found {
+            Some(found) => format!("{:>5.0}%", 100.0 * found[level]),
+            None => format!("{:>6}", "-"),
+        };
+        let shares: String = (0..LEVELS.len()).map(share).collect();
+        format!("{name:18}{bias}{mean:>8.2}{rms:>8.2} {unit:3} {shares}\n")
+    }
+
+    fn json(&self) -> Value {
+        let reliability = (0..LEVELS.len()).map(|level| {
+            json!({ "promised": LEVELS[level].0, "found": self.found.map(|found| found[level]) })
+        });
+        let bias = match &*self.bias {
+            [bias] => json!(bias),
+            along_axes => json!(along_axes),
+        };
+        json!({
+            "name": self.name, "unit": self.unit, "count": self.count,
+            "bias": bias, "mean": self.mean, "rms": self.rms,
+            "reliability": reliability.collect::<Vec<_>>(),
+        })
+    }
+}
+
+fn numbers(evaluation: &Evaluation) -> Vec<Compared<'_>> {
+    let dofs = Dof::ALL.into_iter().zip(&evaluation.dofs);
+    let compared = dofs.filter_map(|(dof, scores)| match dof.unit() {
+        Unit::Angle => Compared::new(dof.name(), ("deg", 1_f64.to_degrees()), scores),
+        Unit::Length => Compared::new(dof.name(), ("mm", 1.0), scores),
     });
+    compared.collect()
+}
+
+fn joints(evaluation: &Evaluation) -> Vec<Compared<'_>> {
     let joints = JOINT_NAMES.into_iter().zip(&evaluation.joints);
-    let all = dofs.chain(joints.map(|(name, scores)| (name, "mm", 1.0, scores)));
-    all.filter(|(.., scores)| scores.count > 0).collect()
+    joints.filter_map(|(name, scores)| Compared::new(name, ("mm", 1.0), scores)).collect()
 }
 
 fn text(evaluation: &Evaluation, lag: Option<Lag>) -> String {
@@ -86,43 +147,31 @@ fn text(evaluation: &Evaluation, lag: Option<Lag>) -> String {
         ),
         None => writeln!(text, "no lag can be told"),
     };
-    let levels = LEVELS.map(|(level, _)| format!("{:>5.0}%", 100.0 * level)).concat();
-    let _ = writeln!(
-        text,
-        "\n{:18}{:>8}{:>8}{:>8}      within what is promised of",
-        "", "bias", "mean", "rms"
-    );
-    let _ = writeln!(text, "{:18}{:>8}{:>8}{:>8}     {levels}", "", "", "", "");
-    for (name, unit, scale, scores) in compared(evaluation) {
-        let [bias, mean, rms] = [scores.bias, scores.mean, scores.rms].map(|e| e * scale);
-        let promised = scores.coverage.map(|share| match scores.promised {
-            0 => format!("{:>6}", "-"),
-            _ => format!("{:>5.0}%", 100.0 * share),
-        });
-        let _ = writeln!(
-            text,
-            "{name:18}{bias:>8.2}{mean:>8.2}{rms:>8.2} {unit:3} {}",
-            promised.concat()
-        );
+    text + &table(&["bias"], &numbers(evaluation))
+        + &table(&["bias x", "y", "z"], &joints(evaluation))
+}
+
+/// A line for each, unless there is none.
+fn table(biases: &[&str], compared: &[Compared<'_>]) -> String {
+    if compared.is_empty() {
+        return String::new();
     }
-    text
+    let names = biases.iter().map(|bias| format!("{bias:>8}")).collect::<Vec<_>>().concat();
+    let blank = " ".repeat(18 + 8 * (biases.len() + 2) + 5);
+    let levels = LEVELS.map(|(level, _)| format!("{:>5.0}%", 100.0 * level)).concat();
+    let lines: String = compared.iter().map(Compared::line).collect();
+    format!(
+        "\n{:18}{names}{:>8}{:>8}      found within what is promised of\n{blank}{levels}\n{lines}",
+        "", "mean", "rms"
+    )
 }
 
 fn json(evaluation: &Evaluation, lag: Option<Lag>) -> Value {
-    let entry = |(name, unit, scale, scores): (&str, &str, f64, &Scores)| {
-        let coverage = LEVELS.iter().zip(scores.coverage).map(|((level, _), share)| {
-            json!({ "promised": level, "found": (scores.promised > 0).then_some(share) })
-        });
-        json!({
-            "name": name, "unit": unit, "count": scores.count,
-            "bias": scores.bias * scale, "mean": scores.mean * scale, "rms": scores.rms * scale,
-            "reliability": coverage.collect::<Vec<_>>(),
-        })
-    };
+    let compared = numbers(evaluation).into_iter().chain(joints(evaluation));
     json!({
         "matched": evaluation.matched,
         "unmatched": evaluation.unmatched,
         "lag": lag.map(|lag| json!({ "seconds": lag.seconds, "correlation": lag.correlation })),
-        "compared": compared(evaluation).into_iter().map(entry).collect::<Vec<_>>(),
+        "compared": compared.map(|compared| compared.json()).collect::<Vec<_>>(),
     })
 }

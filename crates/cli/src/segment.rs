@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
-use image::{DynamicImage, RgbImage};
+use image::{DynamicImage, Pixel, RgbImage};
 use phalanx::{Picture, Segment, Segmentation, Segmenter, mask_from, photograph_from};
 use phalanx_segmentation::{Mask, PlainBackground, SkinModel};
 
@@ -68,7 +68,7 @@ impl Pictures {
         Ok(match self {
             Self::Masks => mask_from(picture),
             Self::Photographs(segmentation) => {
-                segmentation.of_camera(camera)?.segment(&photograph_from(picture))?
+                segmentation.of_camera(camera)?.segment(&photograph(picture)?)?
             }
         })
     }
@@ -79,11 +79,27 @@ impl Pictures {
         if let Self::Photographs(segmentation) = self {
             let segmenter = segmentation.of_camera(camera)?;
             if !matches!(segmenter, Segmenter::Background(_)) {
-                return Ok(Prepared::Photograph(photograph_from(picture), segmenter));
+                return Ok(Prepared::Photograph(photograph(picture)?, segmenter));
             }
         }
         self.mask(camera, picture).map(Prepared::Mask)
     }
+}
+
+/// A picture in colours.
+///
+/// # Errors
+/// A picture that is a mask.
+fn photograph(picture: &DynamicImage) -> Result<RgbImage> {
+    let photograph = photograph_from(picture);
+    let is_of_a_mask = |level: &u8| [0, 255].contains(level);
+    let mut pixels = photograph.pixels();
+    let is_one_colour = pixels.clone().skip(1).all(|pixel| pixel == &photograph[(0, 0)]);
+    ensure!(
+        is_one_colour || !pixels.all(|pixel| pixel.channels().iter().all(is_of_a_mask)),
+        "it is black and white, as masks are: for masks, give --mask"
+    );
+    Ok(photograph)
 }
 
 impl Prepared<'_> {

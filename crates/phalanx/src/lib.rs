@@ -55,7 +55,7 @@ pub use synthesis::rng::ItemRng;
 pub use synthesis::sampler::{PoseSource, SampledScenes, SceneSampler};
 pub use synthesis::scene::{FixedPoses, Scene, SceneSource, SceneSubset, SceneView};
 pub use synthesis::scene_describer::{
-    PoseContexts, SceneDescriber, describe_each, draw_silhouette,
+    PoseContexts, SceneDescriber, describe_each, draw_mask, draw_silhouette,
 };
 pub use training::cameras::Cameras;
 pub use training::maker::Maker;

@@ -15,13 +15,22 @@ pub(crate) fn assign(
     recordings: &[String],
     things: &str,
 ) -> Result<Vec<Option<PathBuf>>> {
+    let names = || cameras.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>().join(", ");
     if let [folder] = recordings
         && cameras.len() > 1
-        && let Some(found) = folders_of(cameras, Path::new(folder))
+        && named(cameras, folder).is_none()
     {
-        return Ok(found);
+        ensure!(Path::new(folder).exists(), "{folder}: there is no such file or folder");
+        let found = folders_of(cameras, Path::new(folder));
+        return found.with_context(|| {
+            format!(
+                "{folder}: it is to hold the {things} of all cameras, but nothing in it is named like one ({}); \
+                 one camera's are given as {}=PATH",
+                names(),
+                cameras[0].name
+            )
+        });
     }
-    let names = || cameras.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>().join(", ");
     ensure!(
         recordings.len() <= cameras.len(),
         "{} {things} for the {} cameras of the rig ({})",
@@ -56,7 +65,7 @@ pub(crate) fn named<'a>(cameras: &[Camera], recording: &'a str) -> Option<(usize
 }
 
 /// What a folder holds for each camera: a folder or a file of its name; `None` where it holds nothing for any.
-pub(crate) fn folders_of(cameras: &[Camera], folder: &Path) -> Option<Vec<Option<PathBuf>>> {
+fn folders_of(cameras: &[Camera], folder: &Path) -> Option<Vec<Option<PathBuf>>> {
     let entries: Vec<PathBuf> =
         std::fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path())).collect();
     let of = |camera: &Camera| {
@@ -96,6 +105,9 @@ mod tests {
         for wrong in [&["a"; 4][..], &["a", "b"], &[&first, &first]] {
             assert!(assigned(wrong).is_err(), "{wrong:?}");
         }
+        let refusal = |path: &str| assigned(&[path]).unwrap_err().to_string();
+        assert_eq!(refusal("nowhere"), "nowhere: there is no such file or folder");
+        assert!(refusal("src").contains("src: it is to hold the recordings of all cameras"));
     }
 
     #[test]

@@ -8,7 +8,7 @@ pub(crate) mod pictures;
 pub(crate) mod reader;
 pub(crate) mod source;
 pub(crate) mod timeline;
-mod timestamps;
+pub(crate) mod timestamps;
 mod yuv;
 
 use std::path::Path;

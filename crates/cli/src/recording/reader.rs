@@ -12,7 +12,7 @@ use phalanx_io::landmarks::LandmarkTrack;
 
 use super::landmarks::{LandmarkRecording, of_frames};
 use super::timeline::{Moment, Timeline};
-use super::{Recording, Stamp};
+use super::{Recording, Stamp, timestamps};
 use crate::segment::Pictures;
 
 /// Reads what all cameras recorded.
@@ -47,17 +47,11 @@ impl<'a> Reader<'a> {
         }
         let mut stamps: Vec<Cow<'_, [Stamp]>> = Vec::new();
         for ((recording, camera), times) in recordings.iter().zip(cameras).zip(times) {
-            stamps.push(with_times(recording.stamps(), camera, times.as_deref())?);
+            stamps.push(timestamps::stamped(recording.stamps(), camera, times.as_deref())?);
         }
         let stamps: Vec<&[Stamp]> = stamps.iter().map(AsRef::as_ref).collect();
         let timeline = Timeline::new(&stamps);
-        let shared =
-            timeline.moments.iter().any(|moment| moment.frames.iter().flatten().count() > 1);
-        ensure!(
-            cameras.len() == 1 || shared,
-            "no two cameras have a frame of one moment: give pictures of one moment the same name in every \
-             folder, or a timestamps file"
-        );
+        check_shared(cameras, &stamps, &timeline)?;
         Ok(Self { cameras, paths, tracks, recordings, landmarks, pictures, timeline })
     }
 
@@ -113,6 +107,25 @@ impl<'a> Reader<'a> {
     }
 }
 
+/// Refuses a camera all frames of which are of moments that no other has.
+fn check_shared(cameras: &[Camera], stamps: &[&[Stamp]], timeline: &Timeline) -> Result<()> {
+    for (view, camera) in cameras.iter().enumerate() {
+        let is_shared = |moment: &Moment| {
+            moment.frames[view].is_some() && moment.frames.iter().flatten().count() > 1
+        };
+        let other = stamps[usize::from(view == 0).min(cameras.len() - 1)];
+        ensure!(
+            cameras.len() == 1 || timeline.moments.iter().any(is_shared),
+            "no frame of camera '{}' is of a moment that another camera has; its first is '{}', another's '{}': \
+             give pictures of one moment the same name in every folder, or a timestamps file",
+            camera.name,
+            stamps[view].first().map_or("", |stamp| &stamp.name),
+            other.first().map_or("", |stamp| &stamp.name)
+        );
+    }
+    Ok(())
+}
+
 /// The cameras' recordings; of one that has landmarks alone, these.
 fn opened(
     paths: &[Option<PathBuf>],
@@ -130,23 +143,6 @@ fn opened(
         }
     }
     Ok(recordings.into_iter().flatten().collect())
-}
-
-fn with_times<'a>(
-    stamps: &'a [Stamp],
-    camera: &Camera,
-    times: Option<&[f64]>,
-) -> Result<Cow<'a, [Stamp]>> {
-    let Some(times) = times else { return Ok(Cow::Borrowed(stamps)) };
-    ensure!(
-        times.len() == stamps.len(),
-        "camera '{}' has {} frames, but {} times",
-        camera.name,
-        stamps.len(),
-        times.len()
-    );
-    let with_time = |(stamp, &time): (&Stamp, &f64)| Stamp { time: Some(time), ..stamp.clone() };
-    Ok(stamps.iter().zip(times).map(with_time).collect())
 }
 
 /// The mask of a picture, which must be a scaled copy of the camera's image to within a pixel.

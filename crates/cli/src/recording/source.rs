@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Args;
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::Side;
@@ -66,7 +66,7 @@ impl Source {
             paths.push(path);
             landmarks.push(track);
         }
-        let times = times(arguments.timestamps.as_ref(), &cameras)?;
+        let times = timestamps::of_cameras(arguments.timestamps.as_deref(), &cameras)?;
         let path = |given: &String| {
             let named = given.split_once('=').filter(|_| !Path::new(given).exists());
             PathBuf::from(named.map_or(given.as_str(), |(_, path)| path))
@@ -101,17 +101,4 @@ impl Source {
     pub(crate) fn inputs(&self) -> impl Iterator<Item = &PathBuf> {
         self.paths.iter().flatten().chain(&self.times_path).chain(&self.landmark_paths)
     }
-}
-
-fn times(path: Option<&PathBuf>, cameras: &[Camera]) -> Result<Vec<Option<Vec<f64>>>> {
-    let Some(path) = path else { return Ok(vec![None; cameras.len()]) };
-    let mut all = timestamps::read(path)?;
-    let of = |camera: &Camera| {
-        let times = all.remove(&camera.name);
-        let times = times.with_context(|| {
-            format!("{}: there are no times of camera '{}'", path.display(), camera.name)
-        })?;
-        Ok(Some(times))
-    };
-    cameras.iter().map(of).collect()
 }

@@ -1,16 +1,58 @@
 //! `timestamps.csv`: when each camera took its frames.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
+use phalanx_camera::Camera;
+
+use super::Stamp;
+
+/// The frame times of each camera, where there is a file of them.
+///
+/// # Errors
+/// A file that cannot be read, or lacks a camera.
+pub(crate) fn of_cameras(path: Option<&Path>, cameras: &[Camera]) -> Result<Vec<Option<Vec<f64>>>> {
+    let Some(path) = path else { return Ok(vec![None; cameras.len()]) };
+    let mut all = read(path)?;
+    let of = |camera: &Camera| {
+        let times = all.remove(&camera.name);
+        let times = times.with_context(|| {
+            format!("{}: there are no times of camera '{}'", path.display(), camera.name)
+        })?;
+        Ok(Some(times))
+    };
+    cameras.iter().map(of).collect()
+}
+
+/// A camera's frames at the times that were written apart, if any were.
+///
+/// # Errors
+/// Another number of times than frames.
+pub(crate) fn stamped<'a>(
+    stamps: &'a [Stamp],
+    camera: &Camera,
+    times: Option<&[f64]>,
+) -> Result<Cow<'a, [Stamp]>> {
+    let Some(times) = times else { return Ok(Cow::Borrowed(stamps)) };
+    ensure!(
+        times.len() == stamps.len(),
+        "camera '{}' has {} frames, but {} times",
+        camera.name,
+        stamps.len(),
+        times.len()
+    );
+    let with_time = |(stamp, &time): (&Stamp, &f64)| Stamp { time: Some(time), ..stamp.clone() };
+    Ok(stamps.iter().zip(times).map(with_time).collect())
+}
 
 /// Frame times in seconds by camera, ascending; a row for each frame with the columns `cam_id` and
 /// `frame_time`, in any order.
 ///
 /// # Errors
 /// A file that cannot be read, absent columns, a time that is no number.
-pub(super) fn read(path: &Path) -> Result<BTreeMap<String, Vec<f64>>> {
+fn read(path: &Path) -> Result<BTreeMap<String, Vec<f64>>> {
     let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
     parse(&text).with_context(|| path.display().to_string())
 }

@@ -5,7 +5,7 @@ use anyhow::{Result, ensure};
 use glam::DVec3;
 use phalanx::{
     Augmentation, Framing, PoseSource, Progress, Proportions, SceneSampler, SceneSource, TakeFrame,
-    TakeSettings, draw_silhouette, fit_take,
+    TakeSettings, draw_mask, fit_take,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
@@ -49,7 +49,7 @@ pub(crate) fn simulate(rig: &Rig, progress: &dyn Progress) -> Result<Simulation>
     let poses: Vec<Pose> = (0..POSES).map(|number| scenes.scene(number).pose).collect();
     // What a camera does not show is missing.
     let masks = |pose: &Pose| {
-        rig.cameras.iter().map(|camera| draw_silhouette(camera, &hand, pose, &rest).ok()).collect()
+        rig.cameras.iter().map(|camera| draw_mask(camera, &hand, pose, &rest).ok()).collect()
     };
     let frames: Vec<TakeFrame> =
         poses.iter().map(|pose| TakeFrame::of_masks(masks(pose))).collect();

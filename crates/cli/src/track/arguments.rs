@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value_t)]
     pub(super) side: SideName,
     /// The frame rate of pictures that have no times; 30 Hz by default.
-    #[arg(long, value_name = "HZ")]
+    #[arg(long, value_name = "HZ", value_parser = rate)]
     pub(super) rate: Option<f64>,
     /// A recording of up to so many moments is fitted as a whole. Of a longer one as many, evenly spread, tell
     /// the hand, which is then tracked from frame to frame.
@@ -39,12 +39,19 @@ pub(crate) struct Arguments {
     pub(super) whole_take: bool,
     /// Where the angles go: .csv, .jsonl or .npz by its name, or - for CSV on standard output. While a hand is
     /// tracked the frames are in OUT.unfinished; a run that was broken off goes on after them, with what is in
-    /// OUT.checkpoint, if it is started again.
+    /// OUT.checkpoint, if it is started again. Before the hand is known, which takes as long as the fit of
+    /// --fit-together moments, nothing is kept.
     #[arg(long, value_name = "FILE")]
     pub(super) out: PathBuf,
     /// Write the hand that was fitted, for later recordings of the same person.
     #[arg(long, value_name = "FILE.toml")]
     pub(super) save_hand: Option<PathBuf>,
+}
+
+fn rate(text: &str) -> Result<f64> {
+    let rate: f64 = text.parse()?;
+    ensure!(rate > 0.0 && rate.is_finite(), "expected a number of frames a second, over 0");
+    Ok(rate)
 }
 
 impl Arguments {

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Result, ensure};
+use phalanx_camera::Camera;
 use phalanx_hand::HandShape;
 use phalanx_io::take::{FrameView, TakeFrame};
 use serde::{Deserialize, Serialize};
@@ -17,8 +18,9 @@ pub(super) struct Tally {
     frames: usize,
     with_hand: usize,
     doubted: usize,
-    /// Without one of the views or more.
+    /// Without one of the views or more, and without each of them.
     with_fewer: usize,
+    without: Vec<usize>,
     failures: usize,
     named: Vec<String>,
 }
@@ -31,6 +33,10 @@ impl Tally {
         self.doubted += usize::from(!frame.doubts.is_empty());
         let is_left_out = |view: &FrameView| view.left_out.is_some();
         self.with_fewer += usize::from(frame.views.iter().any(is_left_out));
+        self.without.resize(frame.views.len(), 0);
+        for (without, view) in self.without.iter_mut().zip(&frame.views) {
+            *without += usize::from(is_left_out(view));
+        }
     }
 
     /// Counts pictures that could not be read, each in words.
@@ -41,8 +47,13 @@ impl Tally {
     }
 
     /// Says how it went, of a take that is written; pictures that could not be read make another exit code.
-    pub(super) fn conclude(&self, hand: &HandShape, out: &Path) -> Result<ExitCode> {
-        let Self { frames, with_hand, doubted, with_fewer, failures, named } = self;
+    pub(super) fn conclude(
+        &self,
+        cameras: &[Camera],
+        hand: &HandShape,
+        out: &Path,
+    ) -> Result<ExitCode> {
+        let Self { frames, with_hand, doubted, with_fewer, without, failures, named } = self;
         for failure in named {
             eprintln!("phalanx: {failure}");
         }
@@ -52,6 +63,15 @@ impl Tally {
         ensure!(*with_hand > 0, "no frame shows a hand");
         if *with_fewer > 0 {
             eprintln!("phalanx: in {with_fewer} frames a view was left out (column `left_out`)");
+        }
+        for (camera, &without) in
+            cameras.iter().zip(without).filter(|(_, without)| 2 * **without > *frames)
+        {
+            eprintln!(
+                "phalanx: camera '{}' was left out of {without} of {frames} frames: was it moved or exchanged with \
+                 another, are its frames of other moments, or does it not see the hand? `phalanx doctor` looks",
+                camera.name
+            );
         }
         eprintln!(
             "phalanx: {with_hand} of {frames} frames show the hand, {doubted} are doubted (column `doubts`); the \

@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     };
     journal.remove();
     drop(bar);
-    tally.conclude(&hand, &arguments.out)
+    tally.conclude(&source.cameras, &hand, &arguments.out)
 }
 
 /// A recording that is fitted as a whole.

@@ -1,6 +1,6 @@
 //! A recording that is being tracked: its cameras, moments and times.
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use glam::DAffine3;
 use phalanx::{FrameFit, TakeFit, TakeSettings, fit_take};
 use phalanx_hand::HandShape;
@@ -45,6 +45,12 @@ impl<'a> Recorded<'a> {
         failures: &mut Vec<String>,
     ) -> Result<TakeFit> {
         let frames = self.reader.read_some(most, failures);
+        let is_empty = |frame: &phalanx::TakeFrame| {
+            frame.masks.iter().all(Option::is_none) && frame.landmarks.iter().all(Option::is_none)
+        };
+        if let (Some(first), true) = (failures.first(), frames.iter().all(is_empty)) {
+            bail!("none of the {} pictures can be used; {first}", failures.len());
+        }
         Ok(fit_take(&self.source.cameras, &frames, settings, bar)?)
     }
 

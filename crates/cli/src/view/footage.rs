@@ -1,15 +1,16 @@
 //! The pictures that a take was made of.
 
-use std::path::Path;
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, ensure};
 use image::{DynamicImage, imageops::FilterType};
 use phalanx_camera::{Camera, Rig};
 use phalanx_io::take::Take;
 
-use crate::recording::assign::folders_of;
-use crate::recording::timeline::Timeline;
-use crate::recording::{Recording, Stamp, open};
+use crate::recording::assign::assign;
+use crate::recording::timeline::{Moment, Timeline};
+use crate::recording::{Recording, Stamp, open, timestamps};
 
 /// Wider pictures are made smaller, px.
 const WIDEST: u32 = 640;
@@ -23,31 +24,68 @@ pub(super) struct Filmed {
     frames: Vec<Option<usize>>,
 }
 
-/// Opens the recordings in a folder, of the cameras that the take, the rig and the folder all have.
+/// Frames' times are written with six decimals; frames are farther apart than this, s.
+const SAME: f64 = 1e-3;
+
+/// Opens the recordings of the cameras that the take has, matched as they were when it was made.
 ///
 /// # Errors
-/// No such camera, a recording that cannot be opened.
-pub(super) fn open_all(take: &Take, folder: &Path, rig: &Rig) -> Result<Vec<Filmed>> {
+/// No recording of the take's cameras, one that cannot be opened, moments that are not the take's.
+pub(super) fn open_all(
+    take: &Take,
+    rig: &Rig,
+    recordings: &[String],
+    timestamps: Option<&Path>,
+) -> Result<Vec<Filmed>> {
     let views = &take.header.views;
-    let cameras = rig.cameras.iter().filter(|camera| views.contains(&camera.name));
-    let cameras: Vec<Camera> = cameras.cloned().collect();
-    let paths = folders_of(&cameras, folder).unwrap_or_default();
+    let assigned = assign(&rig.cameras, recordings, "recordings")?;
+    let both = rig.cameras.iter().zip(assigned);
+    let both = both.filter_map(|(camera, path)| Some((camera.clone(), path?)));
+    let (cameras, paths): (Vec<Camera>, Vec<PathBuf>) =
+        both.filter(|(camera, _)| views.contains(&camera.name)).unzip();
     ensure!(
-        !paths.is_empty(),
-        "{}: nothing there is named as a camera of the take and the rig ({})",
-        folder.display(),
+        !cameras.is_empty(),
+        "none of the take's cameras ({}) has a recording",
         views.join(", ")
     );
-    let both = cameras.into_iter().zip(paths).filter_map(|(camera, path)| Some((camera, path?)));
-    let both = both.map(|(camera, path)| Ok((shown(&camera), open(&path)?)));
-    let both: Vec<(Camera, Box<dyn Recording>)> = both.collect::<Result<_>>()?;
-    let stamps: Vec<&[Stamp]> = both.iter().map(|(_, recording)| recording.stamps()).collect();
+    let times = timestamps::of_cameras(timestamps, &cameras)?;
+    let recordings: Vec<Box<dyn Recording>> =
+        paths.iter().map(|path| open(path)).collect::<Result<_>>()?;
+    let own = recordings.iter().zip(&cameras).zip(&times);
+    let stamps = own.map(|((recording, camera), times)| {
+        timestamps::stamped(recording.stamps(), camera, times.as_deref())
+    });
+    let stamps: Vec<Cow<'_, [Stamp]>> = stamps.collect::<Result<_>>()?;
+    let stamps: Vec<&[Stamp]> = stamps.iter().map(AsRef::as_ref).collect();
     let moments = Timeline::new(&stamps).moments;
-    let filmed = both.into_iter().enumerate().map(|(view, (camera, recording))| {
+    check(take, &moments)?;
+    let filmed = recordings.into_iter().zip(&cameras).enumerate();
+    let filmed = filmed.map(|(view, (recording, camera))| {
         let frames = moments.iter().map(|moment| moment.frames[view]).collect();
-        Filmed { camera, recording, frames }
+        Filmed { camera: shown(camera), recording, frames }
     });
     Ok(filmed.collect())
+}
+
+/// Whether the take's frames are of these moments.
+fn check(take: &Take, moments: &[Moment]) -> Result<()> {
+    for frame in &take.frames {
+        let moment = usize::try_from(frame.index).ok().and_then(|index| moments.get(index));
+        let Some(time) = moment.and_then(|moment| moment.time) else { continue };
+        ensure!(
+            (time - frame.time).abs() < SAME,
+            "frame {} was at {:.3} s when the take was made, but at {time:.3} s in this recording: is it \
+             another, or were other --timestamps given?",
+            frame.index,
+            frame.time
+        );
+    }
+    let by_clock = take.header.rate_hz.is_none();
+    ensure!(
+        !by_clock || moments.iter().all(|moment| moment.time.is_some()),
+        "the take's frames have times that this recording lacks: give the --timestamps that it was made with"
+    );
+    Ok(())
 }
 
 impl Filmed {

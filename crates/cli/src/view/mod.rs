@@ -30,9 +30,13 @@ pub(crate) struct Arguments {
     /// The take: .csv, .jsonl or .npz.
     #[arg(value_name = "TAKE")]
     take: PathBuf,
-    /// The recording: a folder that holds a folder of pictures or a video for each camera, named like it.
-    #[arg(long, value_name = "DIR", requires = "rig")]
-    frames: Option<PathBuf>,
+    /// The recording that was tracked: a folder that holds a folder of pictures or a video for each camera, named
+    /// like it. Given once for each camera, one recording each, in the order of the rig or as CAMERA=PATH.
+    #[arg(long, value_name = "RECORDING", requires = "rig")]
+    frames: Vec<String>,
+    /// When the recording's frames were taken, as `track` was told.
+    #[arg(long, value_name = "FILE.csv", requires = "frames")]
+    timestamps: Option<PathBuf>,
     /// The cameras, to draw the estimated hand over their pictures.
     #[arg(long, value_name = "RIG.toml", requires = "frames")]
     rig: Option<PathBuf>,
@@ -54,8 +58,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     );
     let output = Output::new(&arguments.out, &[&arguments.take])?;
     let take = take_file::read(&arguments.take)?;
-    let mut filmed = match (&arguments.frames, &arguments.rig) {
-        (Some(frames), Some(rig)) => footage::open_all(&take, frames, &check::read(rig)?)?,
+    let timestamps = arguments.timestamps.as_deref();
+    let mut filmed = match (&*arguments.frames, &arguments.rig) {
+        (frames @ [_, ..], Some(rig)) => {
+            footage::open_all(&take, &check::read(rig)?, frames, timestamps)?
+        }
         _ if kind == "html" => Vec::new(),
         _ => bail!("{}: give --frames and --rig", arguments.out.display()),
     };

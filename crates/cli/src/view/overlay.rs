@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use image::{Rgb, RgbImage, imageops};
-use phalanx::{Mask, draw_silhouette};
+use phalanx::{Mask, draw_mask};
 use phalanx_camera::Camera;
 use phalanx_io::take::{Take, TakeFrame, TakeHeader};
 
@@ -16,7 +16,7 @@ const TRUSTED: Rgb<u8> = Rgb([255, 95, 200]);
 pub(super) fn silhouette(take: &Take, frame: &TakeFrame, camera: &Camera) -> Option<Mask> {
     let TakeHeader { hand, world_from_hand, .. } = &take.header;
     let estimate = frame.estimate.as_ref()?;
-    draw_silhouette(camera, hand, &estimate.pose, world_from_hand).ok()
+    draw_mask(camera, hand, &estimate.pose, world_from_hand).ok()
 }
 
 /// The cameras' pictures of a frame side by side, each with the outline of the hand; black where a camera

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use phalanx_camera::Rig;
+use phalanx_camera::{Intrinsics, Rig};
 use serde_json::Value;
 
 use crate::desk::{Desk, Outcome, run};
@@ -123,4 +123,22 @@ fn a_simulation_says_what_to_expect_of_a_rig() {
         let [std, error] = ["std_deg", "error_deg"].map(|name| angle[name].as_f64().unwrap());
         assert!(std > 0.0 && std < 90.0 && error < 45.0, "{angle}");
     }
+}
+
+/// A rig is simulated with its whole pictures, of whatever shape.
+#[test]
+fn a_simulation_sees_what_wide_cameras_see() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rig = Rig::from_toml(include_str!("../../fixtures/desk.toml")).unwrap();
+    for camera in &mut rig.cameras {
+        let own = camera.intrinsics;
+        let wider = Intrinsics { width: 160, cx: own.cx + 20.0, ..own };
+        *camera = camera.with_intrinsics(wider);
+    }
+    std::fs::write(folder.path().join("rig.toml"), rig.to_toml().unwrap()).unwrap();
+    let outcome = run(folder.path(), ["rig", "check", "rig.toml", "--simulate", "--json"]);
+    let report: serde_json::Value = serde_json::from_str(&outcome.out).unwrap();
+    let simulation = &report["simulation"];
+    assert!(simulation["trusted"].as_u64().unwrap() > 24, "{simulation}");
+    assert!(simulation["joints_mm"].as_f64().unwrap() < 15.0, "{simulation}");
 }

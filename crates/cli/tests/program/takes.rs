@@ -3,8 +3,10 @@
 use std::process::{Command, Output};
 
 use glam::DAffine3;
+use phalanx::draw_mask;
+use phalanx_camera::{Intrinsics, Rig};
 use phalanx_hand::{Dof, HandShape};
-use phalanx_io::take::{FrameView, Take, TakeFrame, TakeHeader, read_npz, write_csv};
+use phalanx_io::take::{FrameView, Take, TakeFrame, TakeHeader, read_csv, read_npz, write_csv};
 use tempfile::TempDir;
 
 use crate::desk::closing;
@@ -131,6 +133,71 @@ fn pictures_are_shown_with_joints_and_outline_of_the_hand() {
     let probe =
         Command::new("ffprobe").args(count).args(["-of", "csv=p=0"]).arg(at("film.mp4")).output();
     assert_eq!(String::from_utf8(probe.unwrap().stdout).unwrap().trim(), "120,10");
+}
+
+/// The outline is that of the whole picture, of whatever shape: here of a camera whose picture is larger and
+/// wider than what models look at.
+#[test]
+fn the_outline_lies_on_the_hand_in_pictures_of_any_size() {
+    let folder = Folder::new();
+    let at = |name: &str| folder.0.path().join(name);
+    let mut rig = Rig::from_toml(include_str!("../../fixtures/desk.toml")).unwrap();
+    for camera in &mut rig.cameras {
+        let (cx, cy) = (camera.intrinsics.cx + 40.0, camera.intrinsics.cy + 15.0);
+        let wider = Intrinsics { width: 200, height: 120, cx, cy, ..camera.intrinsics };
+        *camera = camera.with_intrinsics(wider.resized(500, 300));
+    }
+    std::fs::write(at("rig.toml"), rig.to_toml().unwrap()).unwrap();
+    std::fs::create_dir_all(at("frames/top")).unwrap();
+    image::RgbImage::new(500, 300).save(at("frames/top/0.png")).unwrap();
+    let frames = ["--frames", "frames", "--rig", "rig.toml", "--every", "40", "--out"];
+    folder.printed(&[&["view", "take.csv"][..], &frames, &["sheet.png"]].concat());
+    let sheet = image::open(at("sheet.png")).unwrap().to_rgb8();
+    let hand = draw_mask(
+        rig.camera("top").unwrap(),
+        &HandShape::adult(),
+        &closing(0.0),
+        &DAffine3::IDENTITY,
+    );
+    let hand = hand.unwrap();
+    let drawn: Vec<_> = sheet.enumerate_pixels().filter(|(.., pixel)| pixel.0 != [0; 3]).collect();
+    assert!(drawn.len() > 500 && drawn.iter().all(|&(x, y, _)| hand.is_hand(x, y)));
+    let inside = |&(x, y, _): &(u32, u32, _)| {
+        x > 0
+            && y > 0
+            && x < 499
+            && y < 299
+            && (0..9).all(|k| hand.is_hand(x + k % 3 - 1, y + k / 3 - 1))
+    };
+    assert!(!drawn.iter().any(inside), "only its border is drawn");
+}
+
+/// Pictures are matched by the times that the take was made with, and others are refused.
+#[test]
+fn a_page_needs_the_times_of_its_take() {
+    let folder = Folder::new();
+    let at = |name: &str| folder.0.path().join(name);
+    std::fs::write(at("rig.toml"), include_str!("../../fixtures/desk.toml")).unwrap();
+    std::fs::create_dir_all(at("frames/top")).unwrap();
+    let mut times = "cam_id,frame_time\n".to_owned();
+    for frame in 0..30 {
+        let picture = image::RgbImage::from_pixel(8, 6, image::Rgb([8 * frame; 3]));
+        picture.save(at("frames/top").join(format!("{frame:02}.png"))).unwrap();
+        times += &["top,", &(7.0 + f64::from(frame) / 30.0).to_string(), "\n"].concat();
+    }
+    std::fs::write(at("times.csv"), &times).unwrap();
+    std::fs::write(at("other.csv"), times.replace("7.1", "7.15")).unwrap();
+    let given = ["view", "take.csv", "--frames", "top=frames/top", "--rig", "rig.toml"];
+    let view = [&given[..], &["--out", "take.html"]].concat();
+    folder.printed(&[&view[..], &["--timestamps", "times.csv"]].concat());
+    let said = folder.refusal(&[&view[..], &["--timestamps", "other.csv"]].concat());
+    assert!(said.contains("when the take was made"), "{said}");
+    // Made by a clock, which pictures alone do not have.
+    let mut take = read_csv(&folder.file("take.csv")[..]).unwrap();
+    take.header.rate_hz = None;
+    write_csv(&take, std::fs::File::create(at("take.csv")).unwrap()).unwrap();
+    let said = folder.refusal(&view);
+    assert!(said.contains("give the --timestamps"), "{said}");
 }
 
 /// What other commands print, they print as JSON when asked.

@@ -82,6 +82,8 @@ fn wrong_use_is_refused_by_name() {
         (&["take", "--out", "take.trc"][..], ".csv, .jsonl or .npz"),
         (&["nowhere", "elsewhere", "--out", "t.csv"], "nowhere"),
         (&["a", "b", "c", "--out", "t.csv"], "3 recordings for the 2 cameras"),
+        (&["nowhere", "--out", "t.csv"], "nowhere: there is no such file or folder"),
+        (&["take", "--rate", "0", "--out", "t.csv"], "frames a second, over 0"),
         (&["take", "--hand", "me.toml", "--out", "t.csv"], "me.toml"),
         (&["take", "--timestamps", "times.csv", "--out", "t.csv"], "times.csv"),
     ] {
@@ -92,6 +94,12 @@ fn wrong_use_is_refused_by_name() {
     desk.save(&format!("take/{}/0000.png", CAMERAS[0]), &image::DynamicImage::new_luma8(90, 120));
     let outcome = track(&desk, &["take", "--out", "t.csv"]);
     assert!(outcome.err.contains("is it turned or cropped?"), "{outcome:?}");
+    // Masks are no photographs.
+    let desk = recorded(2);
+    let outcome = run(desk.folder(), ["track", "--rig", "rig.toml", "take", "--out", "t.csv"]);
+    assert_eq!(outcome.code, Some(2), "{outcome:?}");
+    assert!(outcome.err.contains("none of the 4 pictures can be used"), "{outcome:?}");
+    assert!(outcome.err.contains("give --mask"), "{outcome:?}");
 }
 
 #[test]
@@ -138,4 +146,33 @@ fn the_demo_goes_to_a_new_folder_and_to_no_other() {
     let again = run(folder.path(), ["demo", "--out", "demo"]);
     assert_eq!(again.code, Some(2), "{again:?}");
     assert!(again.err.contains("not empty"), "{again:?}");
+}
+
+/// What is wrong with a whole recording is said, not only frame by frame.
+#[test]
+fn a_recording_of_other_moments_or_cameras_is_told() {
+    let desk = recorded(6);
+    let [first, second] = CAMERAS;
+    std::fs::create_dir_all(desk.path("named")).unwrap();
+    std::fs::rename(desk.path(&format!("take/{first}")), desk.path(&format!("named/{first}")))
+        .unwrap();
+    for frame in 0..6 {
+        let folder = desk.path(&format!("named/{first}"));
+        let name = |name: String| folder.join(name);
+        std::fs::rename(name(format!("{frame:04}.png")), name(format!("image{frame}.png")))
+            .unwrap();
+    }
+    let given = [format!("{first}=named/{first}"), format!("{second}=take/{second}")];
+    let outcome = track(&desk, &[&given[0], &given[1], "--out", "t.csv"]);
+    assert_eq!(outcome.code, Some(2), "{outcome:?}");
+    assert!(outcome.err.contains("its first is 'image0', another's '0000'"), "{outcome:?}");
+
+    // Two of three cameras exchanged.
+    assert_eq!(run(desk.folder(), ["demo", "--out", "demo"]).code, Some(0));
+    let exchanged = ["side", "top", "other_side"].into_iter().zip(["top", "side", "other_side"]);
+    let given: Vec<String> =
+        exchanged.map(|(camera, shown)| format!("{camera}=demo/recording/{shown}")).collect();
+    let rest = ["track", "--rig", "demo/rig.toml", "--mask", "--out", "t.csv"].map(str::to_owned);
+    let outcome = run(desk.folder(), rest.iter().chain(&given));
+    assert!(outcome.err.contains("was it moved or exchanged with another"), "{outcome:?}");
 }

@@ -20,14 +20,14 @@ pub const LEVELS: [(f64, f64); 9] = [
     (0.95, 1.959_964),
 ];
 
-/// The errors of one number or joint; rad or mm.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Scores {
+/// The errors of a number (`N` = 1, rad or mm), or of a joint along the axes of the world (`N` = 3, mm).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scores<const N: usize> {
     /// How many frames were compared.
     pub count: usize,
-    /// The mean of the errors: estimated less reference. Of a joint, 0.
-    pub bias: f64,
-    /// The mean of their sizes.
+    /// The mean of the errors: estimated less reference.
+    pub bias: [f64; N],
+    /// The mean of their sizes; of a joint, of its distances.
     pub mean: f64,
     /// The root of the mean of their squares.
     pub rms: f64,
@@ -45,16 +45,16 @@ pub struct Evaluation {
     /// Of the take's frames with a pose, how many have no row within half a frame.
     pub unmatched: usize,
     /// Each of the 28 numbers.
-    pub dofs: [Scores; Dof::COUNT],
-    /// Each joint: distances, and deviations along the axes.
-    pub joints: [Scores; JOINTS],
+    pub dofs: [Scores<1>; Dof::COUNT],
+    /// Each joint.
+    pub joints: [Scores<3>; JOINTS],
 }
 
 /// Compares frame by frame, each with the row of the reference nearest to its time (within half a
 /// frame) or of its number. `lag` is taken from the take's times, s.
 pub fn evaluate(take: &Take, reference: &Reference, lag: f64) -> Evaluation {
-    let mut dofs = [(); Dof::COUNT].map(|()| Sums::default());
-    let mut joints = [(); JOINTS].map(|()| Sums::default());
+    let mut dofs = [(); Dof::COUNT].map(|()| Sums::NONE);
+    let mut joints = [(); JOINTS].map(|()| Sums::NONE);
     let (mut matched, mut unmatched) = (0, 0);
     for (frame, estimate) in take.frames.iter().filter_map(|f| Some((f, f.estimate.as_ref()?))) {
         let (instant, slack) = match reference.clock {
@@ -68,7 +68,7 @@ pub fn evaluate(take: &Take, reference: &Reference, lag: f64) -> Evaluation {
         matched += 1;
         for dof in Dof::ALL {
             let error = turn(dof, estimate.pose[dof] - reference.poses[row][dof.index()]);
-            dofs[dof.index()].add(error, error.abs(), [(error, estimate.std[dof.index()])]);
+            dofs[dof.index()].add(error.abs(), [(error, estimate.std[dof.index()])]);
         }
         for (joint, sums) in joints.iter_mut().enumerate() {
             add_joint(sums, estimate, joint, reference, row);
@@ -83,7 +83,7 @@ pub fn evaluate(take: &Take, reference: &Reference, lag: f64) -> Evaluation {
 }
 
 fn add_joint(
-    sums: &mut Sums,
+    sums: &mut Sums<3>,
     estimate: &PoseEstimate,
     joint: usize,
     reference: &Reference,
@@ -92,7 +92,7 @@ fn add_joint(
     let error = estimate.joints[joint] - reference.joints[row][joint];
     let std = estimate.joint_std.map(|std| std[joint]);
     let along = [0, 1, 2].map(|axis| (error[axis], std.map(|std| std[axis])));
-    sums.add(0.0, error.length(), along);
+    sums.add(error.length(), along);
 }
 
 /// The row nearest to an instant, if it is within the slack.
@@ -115,27 +115,35 @@ fn turn(dof: Dof, error: f64) -> f64 {
 }
 
 /// Sums of errors as they come.
-#[derive(Default)]
-struct Sums {
+struct Sums<const N: usize> {
     count: usize,
-    signed: f64,
+    signed: [f64; N],
     sizes: f64,
     squares: f64,
     promised: usize,
     within: [usize; LEVELS.len()],
 }
 
-impl Sums {
-    /// Adds an error, unless it is NaN, and its parts with their deviations.
-    fn add<const N: usize>(&mut self, signed: f64, size: f64, parts: [(f64, Option<f64>); N]) {
+impl<const N: usize> Sums<N> {
+    const NONE: Self = Self {
+        count: 0,
+        signed: [0.0; N],
+        sizes: 0.0,
+        squares: 0.0,
+        promised: 0,
+        within: [0; LEVELS.len()],
+    };
+
+    /// Adds an error of a size, unless it is NaN, and its parts with their deviations.
+    fn add(&mut self, size: f64, parts: [(f64, Option<f64>); N]) {
         if size.is_nan() {
             return;
         }
         self.count += 1;
-        self.signed += signed;
         self.sizes += size;
         self.squares += size * size;
-        for (error, std) in parts {
+        for (signed, (error, std)) in self.signed.iter_mut().zip(parts) {
+            *signed += error;
             let Some(std) = std else { continue };
             self.promised += 1;
             for (within, (_, deviations)) in self.within.iter_mut().zip(LEVELS) {
@@ -144,11 +152,11 @@ impl Sums {
         }
     }
 
-    fn scores(&self) -> Scores {
+    fn scores(&self) -> Scores<N> {
         let [count, promised] = [self.count, self.promised].map(|count| count.max(1) as f64);
         Scores {
             count: self.count,
-            bias: self.signed / count,
+            bias: self.signed.map(|signed| signed / count),
             mean: self.sizes / count,
             rms: (self.squares / count).sqrt(),
             promised: self.promised,

@@ -1,9 +1,9 @@
 // Curves over time: a line with a band, drawn only while on the screen, a column of pixels at a time.
 
-const MARGIN = { left: 44, right: 8, top: 6, bottom: 18 };
+const MARGIN = { left: 56, right: 8, top: 6, bottom: 18 };
 
 class Curve {
-  // series: { value(frame), std(frame), low, high, unit } in the file's units.
+  // series: { value(frame), std(frame), low, high, unit } in the file's units; unit is what stands after a number.
   constructor(canvas, take, series, seek) {
     Object.assign(this, { canvas, take, series, visible: false });
     let held = false;
@@ -75,9 +75,10 @@ class Curve {
     context.strokeStyle = colour("--edge");
     context.textAlign = "right";
     context.textBaseline = "middle";
-    const { low, high } = this.series;
+    const { low, high, unit } = this.series;
+    const decimals = high - low > 3 ? 0 : 2;
     for (const value of [low, (low + high) / 2, high]) {
-      context.fillText(high - low > 3 ? value.toFixed(0) : value.toFixed(2), MARGIN.left - 5, y(value));
+      context.fillText(value.toFixed(decimals) + unit, MARGIN.left - 5, y(value));
       context.beginPath();
       context.moveTo(MARGIN.left, y(value));
       context.lineTo(MARGIN.left + width, y(value));

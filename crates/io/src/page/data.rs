@@ -61,7 +61,9 @@ pub(super) fn of(take: &Take, pictures: &[ViewPictures]) -> Result<Value> {
         "about": about(take, step),
         "side": take.header.hand.side,
         "frames": frames.len(),
-        "dofs": Dof::ALL.map(|dof| json!({ "name": dof.name(), "unit": unit(dof) })),
+        "dofs": Dof::ALL.map(|dof| {
+            json!({ "name": dof.name(), "unit": unit(dof), "positive": positive(dof) })
+        }),
         "views": take.header.views,
         "codes": codes,
         "time": base64(frames.iter().map(|frame| frame.time.to_le_bytes())),
@@ -97,6 +99,24 @@ fn unit(dof: Dof) -> &'static str {
     match dof.unit() {
         Unit::Angle => "deg",
         Unit::Length => "mm",
+    }
+}
+
+/// Which way a number grows, of either hand.
+fn positive(dof: Dof) -> &'static str {
+    match dof {
+        Dof::ThumbAbduction => "away from the palm",
+        Dof::MiddleAbduction | Dof::WristDeviation => "towards the thumb",
+        Dof::IndexAbduction | Dof::RingAbduction | Dof::LittleAbduction => {
+            "away from the middle finger"
+        }
+        Dof::ThetaX => "about X",
+        Dof::ThetaY => "about Y",
+        Dof::ThetaZ => "about Z",
+        Dof::TX => "along X",
+        Dof::TY => "along Y",
+        Dof::TZ => "along Z",
+        _ => "towards the palm",
     }
 }
 

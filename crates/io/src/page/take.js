@@ -15,10 +15,12 @@ function readTake() {
   for (const name of ["pose", "std", "quality", "overlap"]) take[name] = new Float32Array(bytes(data[name]));
   take.used = new Uint8Array(bytes(data.used));
   const leftOut = new Uint8Array(bytes(data.leftOut));
+  // Why a view of a frame was left out, if it was; views count on from frame to frame.
+  take.whyWithout = (at) => data.leftOutCodes[leftOut[at] - 1];
   // The views that a frame does without, each with the reason.
   take.without = (frame) => take.views.flatMap((name, view) => {
-    const code = leftOut[take.views.length * frame + view];
-    return code ? [`${name} (${data.leftOutCodes[code - 1]})`] : [];
+    const why = take.whyWithout(take.views.length * frame + view);
+    return why ? [`${name} (${why})`] : [];
   });
   const [frames, codes] = [new Uint32Array(bytes(data.doubtFrames)), new Uint32Array(bytes(data.doubtCodes))];
   take.doubts = new Map();
@@ -45,6 +47,8 @@ function frameAt(take, time) {
   return Math.abs(take.time[before] - time) < Math.abs(take.time[low] - time) ? before : low;
 }
 
+const UNITS = { deg: "°", mm: " mm" };
+
 function number(value, unit) {
-  return Number.isNaN(value) ? "–" : `${value.toFixed(1)}${unit === "deg" ? "°" : " mm"}`;
+  return Number.isNaN(value) ? "–" : value.toFixed(1) + UNITS[unit];
 }

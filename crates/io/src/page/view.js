@@ -58,17 +58,18 @@ function addCurves() {
     curves.push(canvas.curve);
     watcher.observe(canvas);
   };
-  add(element("quality"), { value: (frame) => take.quality[frame], std: () => NaN, low: 0, high: 1 });
-  take.dofs.forEach(({ name, unit }, dof) => {
+  add(element("quality"), { value: (frame) => take.quality[frame], std: () => NaN, low: 0, high: 1, unit: "" });
+  take.dofs.forEach(({ name, unit, positive }, dof) => {
     const [low, high] = bounds(take, dof, unit);
     const box = made("div", "", { class: "angle", "data-group": name.split(".")[0] });
     const title = made("h3", name);
+    title.append(made("span", `+ ${positive}`, { class: "positive" }));
     const value = title.appendChild(made("span"));
     const canvas = made("canvas", "", { class: "curve", role: "img" });
     box.append(title, canvas);
     element("curves").append(box);
-    add(canvas, { value: (f) => take.pose[28 * f + dof], std: (f) => take.std[28 * f + dof], low, high });
-    canvas.setAttribute("aria-label", `${name} along time, from ${low} to ${high} ${unit}`);
+    add(canvas, { value: (f) => take.pose[28 * f + dof], std: (f) => take.std[28 * f + dof], low, high, unit: UNITS[unit] });
+    canvas.setAttribute("aria-label", `${name}, positive ${positive}, along time, from ${low} to ${high}${UNITS[unit]}`);
     labels.push((frame) => {
       const std = take.std[28 * frame + dof];
       const spread = Number.isFinite(std) ? ` ± ${number(std, unit)}` : take.found(frame) ? ", not estimated" : "";
@@ -97,13 +98,21 @@ function addPictures() {
       shown = k;
       image.src = view.data[k];
       image.alt = `What ${view.name} saw in frame ${take.index[view.frames[k]]}, with the estimated hand`;
-      caption.textContent = `${view.name}, frame ${take.index[view.frames[k]]}`;
+      caption.textContent = [view.name, `frame ${take.index[view.frames[k]]}`, ...agreement(view.name, view.frames[k])].join(", ");
       const context = canvas.getContext("2d");
       context.clearRect(0, 0, view.width, view.height);
       drawOutline(context, new Float32Array(bytes(view.outlines[k])), view.width);
       drawJoints(context, joints.subarray(42 * k, 42 * k + 42), view.width);
     });
   }
+}
+
+// How well a frame agrees with what a camera saw, in words.
+function agreement(name, frame) {
+  const at = take.views.length * frame + take.views.indexOf(name);
+  const why = take.whyWithout(at);
+  const overlap = take.overlap[at];
+  return [why && `left out (${why})`, Number.isFinite(overlap) && `overlap ${overlap.toFixed(2)}`].filter(Boolean);
 }
 
 // The outline of the estimated hand; a point that is none ends a piece.
@@ -140,6 +149,15 @@ function drawJoints(context, joints, width) {
   }
 }
 
+// What doubts mean, which are written as CODE or CODE:CAMERA.
+const DOUBTS = {
+  "no-hand": "no camera shows a hand",
+  "poor-fit": "a camera that was used shows something else than the estimated hand",
+  "poor-landmarks": "the landmarks of that camera are of something else than the estimated hand",
+  "open": "the cameras leave the pose open: it has no deviations",
+  "cut-off": "part of the hand is beyond the border of that camera's picture, and no two cameras show all of it",
+};
+
 function addDoubts() {
   const most = 500;
   const doubted = [...take.doubts.keys()].sort((a, b) => a - b);
@@ -148,6 +166,8 @@ function addDoubts() {
   const each = [...counts].map(([code, count]) => `${code} (${count})`).join(", ");
   const cut = doubted.length > most ? `; the first ${most} are listed` : "";
   element("doubts-note").textContent = doubted.length ? `${doubted.length} of ${take.count} frames: ${each}${cut}.` : "None.";
+  const known = new Set([...counts.keys()].map((code) => code.split(":")[0]).filter((code) => Object.hasOwn(DOUBTS, code)));
+  for (const code of known) element("doubt-words").append(made("dt", code), made("dd", DOUBTS[code]));
   for (const frame of doubted.slice(0, most)) {
     const item = made("li");
     const button = item.appendChild(made("button", describe(frame).join(" · "), { type: "button" }));

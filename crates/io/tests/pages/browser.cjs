@@ -24,7 +24,7 @@ async function useEveryControl(page) {
   await page.waitForFunction(() => document.getElementById("frame").value !== "12");
   if ((await page.getAttribute("#play", "aria-pressed")) === "true") await page.click("#play");
   const frame = await page.inputValue("#frame");
-  await page.click("#quality", { position: { x: 60, y: 30 } });
+  await page.click("#quality", { position: { x: 200, y: 30 } });
   assert.notStrictEqual(await page.inputValue("#frame"), frame, "a click on a curve goes there");
   for (const button of (await page.$$("#doubts button")).slice(0, 3)) {
     await button.click();

@@ -1,5 +1,6 @@
 //! Range of motion, and a take beside a reference.
 
+use glam::DVec3;
 use phalanx_hand::{Dof, Side};
 use phalanx_io::evaluation::{Clock, LEVELS, evaluate, lag, read_csv, read_motion_file, read_trc};
 use phalanx_io::export::{
@@ -88,10 +89,11 @@ fn every_kind_of_reference_agrees_with_the_take_it_was_made_of() {
     for reference in references {
         let evaluation = evaluate(&take, &reference, 0.0);
         assert_eq!((evaluation.matched, evaluation.unmatched), (39, 0));
-        let scores = evaluation.dofs.iter().chain(&evaluation.joints);
-        let compared: Vec<_> = scores.filter(|scores| scores.count > 0).collect();
+        let numbers = evaluation.dofs.iter().map(|scores| (scores.count, scores.rms));
+        let joints = evaluation.joints.iter().map(|scores| (scores.count, scores.rms));
+        let compared: Vec<_> = numbers.chain(joints).filter(|(count, _)| *count > 0).collect();
         assert!(compared.len() >= 21);
-        assert!(compared.iter().all(|scores| scores.rms < 2e-4 && scores.count == 39));
+        assert!(compared.iter().all(|&(count, rms)| rms < 2e-4 && count == 39));
     }
 }
 
@@ -108,12 +110,17 @@ fn errors_and_coverage_are_counted() {
     let evaluation = evaluate(&take, &reference, 0.0);
     let scores = &evaluation.dofs[Dof::IndexPip.index()];
     let near = f64::from(20) / 39.0;
-    assert!((scores.bias - (near * 0.024 + (1.0 - near) * 0.09)).abs() < 1e-5);
+    assert!((scores.bias[0] - (near * 0.024 + (1.0 - near) * 0.09)).abs() < 1e-5);
     for ((level, _), share) in LEVELS.iter().zip(scores.coverage) {
         let expected = if *level >= 0.60 { near } else { 0.0 };
         assert!((share - expected).abs() < 1e-9, "{level}: {share}");
     }
     assert_eq!(evaluation.dofs[Dof::ThetaX.index()].promised, 0, "it has no deviation");
+    // A joint that is said to be beside where it was.
+    let beside = DVec3::new(2.0, -3.0, 6.0);
+    reference.joints.iter_mut().for_each(|joints| joints[8] -= beside);
+    let scores = &evaluate(&take, &reference, 0.0).joints[8];
+    assert!(DVec3::from(scores.bias).distance(beside) < 1e-3 && (scores.mean - 7.0).abs() < 1e-3);
 }
 
 #[test]

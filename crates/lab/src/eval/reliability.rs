@@ -114,12 +114,13 @@ impl Found {
 fn chart(found: &[Found]) -> Chart {
     let percent = |share: f64| 100.0 * share;
     let promised = PROMISED.map(|(share, _)| percent(share));
-    let right = promised.map(|share| (share, share)).to_vec();
+    let as_promised = promised.map(|share| (share, share)).to_vec();
     let curve = |found: &Found| {
         let shares = found.shares.iter().map(|&share| percent(share));
         Series::new(&found.name, Mark::LineAndDots, promised.into_iter().zip(shares).collect())
     };
-    let series = found.iter().map(curve).chain([Series::new("right", Mark::Line, right)]);
+    let series =
+        found.iter().map(curve).chain([Series::new("as promised", Mark::Line, as_promised)]);
     Chart {
         x: Axis::from_zero("promised, %"),
         y: Axis::from_zero("found, %"),

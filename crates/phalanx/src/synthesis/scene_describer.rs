@@ -43,7 +43,8 @@ pub fn describe_each(
 }
 
 /// Draws a posed hand as one camera's silhouette at
-/// [`WORKING_SIZE`](crate::WORKING_SIZE).
+/// [`WORKING_SIZE`](crate::WORKING_SIZE): the middle of a picture that has another shape.
+/// [`draw_mask`] draws all that the camera sees.
 ///
 /// # Errors
 /// A camera that cannot draw.
@@ -53,9 +54,16 @@ pub fn draw_silhouette(
     pose: &Pose,
     rest: &DAffine3,
 ) -> Result<Mask> {
-    let camera = working_camera(camera)?;
+    draw_mask(&working_camera(camera)?, hand, pose, rest)
+}
+
+/// Draws a posed hand as one camera sees it, pixel by pixel of the camera's picture.
+///
+/// # Errors
+/// A camera that cannot draw.
+pub fn draw_mask(camera: &Camera, hand: &HandShape, pose: &Pose, rest: &DAffine3) -> Result<Mask> {
     let solids = hand.pose(pose, rest).primitives;
-    Renderer::new(&camera)
+    Renderer::new(camera)
         .and_then(|mut renderer| renderer.silhouette(&solids))
         .map(Mask::from)
         .map_err(|reason| Error::Render { camera: camera.name.clone(), reason })
