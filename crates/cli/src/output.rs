@@ -93,6 +93,8 @@ struct Figure {
     value: f64,
     /// None for a number that is not estimated.
     std: Option<f64>,
+    /// Half of the interval that holds the truth in 95 of 100 cases.
+    interval_95: Option<f64>,
     unit: &'static str,
 }
 
@@ -102,6 +104,7 @@ impl Figure {
         Self {
             value: unit.to_file(estimate.pose[dof]),
             std: estimate.std[dof.index()].map(|std| unit.to_file(std)),
+            interval_95: estimate.interval(dof).map(|half| unit.to_file(half)),
             unit: match unit {
                 Unit::Angle => "deg",
                 Unit::Length => "mm",
@@ -168,7 +171,7 @@ pub(crate) fn named_text(frame: &str, estimate: Option<&Estimate>) -> String {
 pub(crate) fn text(estimate: &Estimate) -> String {
     let mut text = String::new();
     for dof in Dof::ALL {
-        let Figure { value, std, unit } = Figure::of(estimate, dof);
+        let Figure { value, std, unit, .. } = Figure::of(estimate, dof);
         let spread = match std {
             Some(std) => format!("± {std:5.1} {unit}"),
             None => format!("{unit}, not learnt"),

@@ -9,7 +9,7 @@ use crate::bench::{flat_memory, peers, performance};
 use crate::data::fixtures;
 use crate::eval::{
     ablation, doubts, global_pose, held_out, hypotheses, presets, reliability, selection, subsets,
-    table1,
+    table1, tracking,
 };
 use crate::figures::pictures;
 use crate::models::{skin_model, wrist_model};
@@ -41,6 +41,9 @@ pub enum Command {
     Reliability(reliability::Arguments),
     /// Find out which wrong answers are doubted, and for which cause: docs/results/doubts.md.
     Doubts(doubts::Arguments),
+    /// Measure how still and how late a drawn hand is tracked: docs/results/tracking.md.
+    #[command(name = "eval-tracking")]
+    EvalTracking(tracking::Arguments),
     /// Evaluate real takes, by cameras used, input and method.
     #[command(name = "eval-real")]
     EvalReal(Box<real::Arguments>),
@@ -91,6 +94,7 @@ impl Command {
             Self::EvalSubsets(arguments) => subsets::run(arguments)?,
             Self::Reliability(arguments) => reliability::run(arguments)?,
             Self::Doubts(arguments) => doubts::run(arguments)?,
+            Self::EvalTracking(arguments) => tracking::run(arguments)?,
             Self::EvalReal(arguments) => real::run(arguments)?,
             Self::Selection(arguments) => selection::run(arguments)?,
             Self::Hypotheses(arguments) => hypotheses::run(arguments)?,

@@ -29,6 +29,7 @@ pub use estimator::hypotheses::Hypothesis;
 pub use estimator::model::Estimator;
 pub use estimator::observation::{Observation, ObservedView};
 pub use estimator::placement::PlacementErrors;
+pub use estimator::refined_errors::RefinedErrors;
 pub use estimator::regression::FittedRegressor;
 pub use features::describer::{
     Describer, OrientationRule, ViewConfig, WORKING_SIZE, working_camera,

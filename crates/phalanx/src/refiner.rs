@@ -209,11 +209,9 @@ impl Refiner {
         Ok(calibration.run(&self.hand, &self.rest, frames)?)
     }
 
-    /// An estimate after refinement: the pose, its deviations and the joints.
-    ///
-    /// # Errors
-    /// As of [`prior`](Self::prior).
-    pub fn refined_estimate(&self, estimate: Estimate, refined: &PoseFit) -> Result<Estimate> {
+    /// An estimate after refinement: the pose, its deviations as the curvature of the fit has them, and the
+    /// joints.
+    fn refined_estimate(&self, estimate: Estimate, refined: &PoseFit) -> Result<Estimate> {
         let prior = self.prior(&estimate.pose, &estimate.std)?;
         let mut std = [None; Dof::COUNT];
         let diagonal = refined.covariance.iter().step_by(prior.dofs().len() + 1);
@@ -241,7 +239,9 @@ impl Refiner {
         self.refine_estimate(estimator, estimator.estimate(pictures, workspace)?)
     }
 
-    /// Refines an estimate with every hypothesis that the estimator has about it.
+    /// Refines an estimate with every hypothesis that the estimator has about it. Deviations are those that
+    /// such estimates are [known](crate::RefinedErrors) to have, where that was learnt: for the hand that the
+    /// estimator has, and settings as [`PoseFitSettings::of_strangers`].
     ///
     /// # Errors
     /// As of [`refine`](Self::refine).
@@ -259,6 +259,10 @@ impl Refiner {
         let fit =
             fits.next().ok_or(Error::Mismatch { part: "refined poses", found: 0, expected: 1 })?;
         let refined = self.refined_estimate(estimate.clone(), &fit)?;
+        let refined = match estimator.refined_errors() {
+            Some(errors) => errors.scaled(refined, fit.nuisance_fitted),
+            None => refined,
+        };
         let refined = estimator.checked(&self.hand, refined)?;
         Ok(RefinedEstimate { estimate, refined, fit, others: fits.collect() })
     }

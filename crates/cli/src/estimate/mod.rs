@@ -13,7 +13,7 @@ use phalanx::{
     draw_overlay, draw_silhouette, draw_window_overlay, mask_from, working_window,
 };
 use phalanx_hand::HandShape;
-use phalanx_refine::{NuisanceParameters, PoseFitSettings};
+use phalanx_refine::PoseFitSettings;
 use phalanx_segmentation::Silhouette;
 
 use crate::input::{self, Crop};
@@ -204,10 +204,7 @@ fn refine(
     estimate: Estimate,
     doubts: &mut Vec<Doubt>,
 ) -> Result<Estimate> {
-    let refinement = PoseFitSettings {
-        nuisance: Some(NuisanceParameters::default()),
-        ..PoseFitSettings::default()
-    };
+    let refinement = PoseFitSettings::of_strangers();
     let refiner = Refiner::for_estimator(estimator, refinement)?.with_hand(hand)?;
     let RefinedEstimate { refined, fit, .. } = refiner.refine_estimate(estimator, estimate)?;
     if !fit.converged {

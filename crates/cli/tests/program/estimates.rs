@@ -42,6 +42,7 @@ fn json_holds_the_pose_the_joints_and_the_views() {
             assert_eq!(figure["unit"], unit, "{dof}");
             let std = &figure["std"];
             assert!(if learnt(dof) { std.as_f64() > Some(0.0) } else { std.is_null() }, "{dof}");
+            assert_eq!(figure["interval_95"].as_f64().is_some(), learnt(dof), "{dof}");
             let truth = dof.unit().to_file(closing(0.5)[dof]);
             assert!((value(&report, dof) - truth).abs() < 12.0, "{dof}: {figure} for {truth}");
         }

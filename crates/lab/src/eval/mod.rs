@@ -13,3 +13,4 @@ pub(crate) mod seen;
 pub(crate) mod selection;
 pub(crate) mod subsets;
 pub(crate) mod table1;
+pub(crate) mod tracking;

@@ -5,7 +5,7 @@ use phalanx::{
     Estimate, Estimator, Framing, Picture, Progress, SceneDescriber, SceneSource, Workspace,
 };
 use phalanx_hand::Pose;
-use phalanx_refine::{NuisanceParameters, PoseFitSettings};
+use phalanx_refine::PoseFitSettings;
 use phalanx_segmentation::Silhouette;
 use rayon::prelude::*;
 
@@ -53,10 +53,7 @@ impl Refining {
     /// With the mean hand, all that there is switched on.
     pub(crate) fn whole() -> Self {
         Self {
-            refinement: PoseFitSettings {
-                nuisance: Some(NuisanceParameters::default()),
-                ..PoseFitSettings::default()
-            },
+            refinement: PoseFitSettings::of_strangers(),
             starts: Starts::Hypotheses,
             believed: Believed::Estimate,
             hand: Hand::Mean,

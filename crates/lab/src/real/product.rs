@@ -9,7 +9,7 @@ use phalanx::{
 };
 use phalanx_camera::{Rig, Volume};
 use phalanx_hand::HandShape;
-use phalanx_refine::{NuisanceParameters, PoseFit, PoseFitSettings};
+use phalanx_refine::{PoseFit, PoseFitSettings};
 use phalanx_segmentation::{ForearmCue, Mask, SkinModel};
 
 use super::deviation::PoseCovariance;
@@ -42,10 +42,7 @@ impl Product {
         let hand = HandShape { side: take.side, ..HandShape::adult() };
         let trainer = Trainer::preset(Preset::Fast).framing(Framing::Window);
         let estimator = trainer.fit(&rig, &hand, progress)?;
-        let refinement = PoseFitSettings {
-            nuisance: Some(NuisanceParameters::default()),
-            ..PoseFitSettings::default()
-        };
+        let refinement = PoseFitSettings::of_strangers();
         let refiner = Refiner::for_estimator(&estimator, refinement)?;
         Ok(Self { estimator, refiner, skin: SkinModel::builtin() })
     }

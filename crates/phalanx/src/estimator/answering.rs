@@ -9,7 +9,7 @@ use crate::checking::quick_fit::QuickFit;
 use crate::checking::usual::Explanation;
 use crate::checking::{doubts, redraw};
 use crate::error::{Error, Result};
-use crate::estimator::estimate::{Estimate, known};
+use crate::estimator::estimate::{Estimate, NORMAL_TAIL, known};
 use crate::estimator::expert::Expert;
 use crate::estimator::model::Estimator;
 use crate::estimator::observation::Observation;
@@ -82,8 +82,8 @@ impl Estimator {
     ) -> Result<Estimate> {
         let (pose, std) = regress(expert, workspace)?;
         let joints = self.hand().pose(&pose, &self.rig().volume.rest_frame()).joints;
-        let (overlaps, doubts) = (Vec::new(), Vec::new());
-        let estimate = Estimate { pose, std, joints, observation, overlaps, doubts };
+        let (tails, overlaps, doubts) = ([NORMAL_TAIL; Dof::COUNT], Vec::new(), Vec::new());
+        let estimate = Estimate { pose, std, tails, joints, observation, overlaps, doubts };
         match estimate.observation.framing() {
             Framing::Picture => Ok(estimate),
             Framing::Window => {

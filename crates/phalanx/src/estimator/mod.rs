@@ -11,6 +11,7 @@ pub(crate) mod model;
 pub(crate) mod model_file;
 pub(crate) mod observation;
 pub(crate) mod placement;
+pub(crate) mod refined_errors;
 pub(crate) mod regression;
 mod seeing;
 pub(crate) mod subset_regression;

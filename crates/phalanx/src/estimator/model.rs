@@ -8,6 +8,7 @@ use crate::estimator::error_model::ErrorModel;
 use crate::estimator::expert::Expert;
 use crate::estimator::observation::Observation;
 use crate::estimator::placement::PlacementErrors;
+use crate::estimator::refined_errors::RefinedErrors;
 use crate::estimator::regression::FittedRegressor;
 use crate::estimator::subset_regression::SubsetRegression;
 use crate::features::describer::OrientationRule;
@@ -25,6 +26,7 @@ pub struct Estimator {
     regression: FittedRegressor,
     errors: Option<ErrorModel>,
     subsets: Option<Subsets>,
+    refined: Option<RefinedErrors>,
 }
 
 /// What answers where some of the cameras are missing.
@@ -58,7 +60,7 @@ impl Estimator {
                 return Err(Error::Mismatch { part, found, expected });
             }
         }
-        Ok(Self { rig, hand, descriptor, regression, errors: None, subsets: None })
+        Ok(Self { rig, hand, descriptor, regression, errors: None, subsets: None, refined: None })
     }
 
     /// The same estimator, answering where some of the cameras are missing too.
@@ -97,6 +99,15 @@ impl Estimator {
     pub fn with_error_model(self, errors: ErrorModel) -> Result<Self> {
         self.check_errors(&errors, self.rig.cameras.len())?;
         Ok(Self { errors: Some(errors), ..self })
+    }
+
+    /// The same estimator, knowing how its refined estimates err.
+    ///
+    /// # Errors
+    /// Scales that are none.
+    pub fn with_refined_errors(self, refined: RefinedErrors) -> Result<Self> {
+        refined.check()?;
+        Ok(Self { refined: Some(refined), ..self })
     }
 
     fn check_errors(&self, errors: &ErrorModel, views: usize) -> Result<()> {
@@ -146,6 +157,11 @@ impl Estimator {
     /// How its estimates err, if it has [learnt it](Self::fit_error_model).
     pub fn error_model(&self) -> Option<&ErrorModel> {
         self.errors.as_ref()
+    }
+
+    /// How its refined estimates err, if it has [learnt it](Self::fit_refined_errors).
+    pub fn refined_errors(&self) -> Option<&RefinedErrors> {
+        self.refined.as_ref()
     }
 
     /// What answers where some of the cameras are missing, if it was learnt.

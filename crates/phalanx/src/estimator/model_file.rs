@@ -13,11 +13,12 @@ use crate::estimator::container::Container;
 use crate::estimator::error_model::ErrorModel;
 use crate::estimator::model::Estimator;
 use crate::estimator::placement::PlacementErrors;
+use crate::estimator::refined_errors::RefinedErrors;
 use crate::estimator::regression::FittedRegressor;
 use crate::estimator::subset_regression::SubsetRegression;
 use crate::features::descriptor::Descriptor;
 
-const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 9 };
+const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 10 };
 
 /// What the payload holds.
 #[derive(Serialize, Deserialize)]
@@ -28,6 +29,7 @@ struct Payload<'a> {
     regression: Stored<'a>,
     errors: Option<StoredErrors<'a>>,
     subsets: Option<StoredSubsets<'a>>,
+    refined: Option<Cow<'a, RefinedErrors>>,
 }
 
 /// What answers where some of the cameras are missing.
@@ -91,6 +93,7 @@ impl Estimator {
                 regression: Cow::Borrowed(&subsets.regression),
                 errors: subsets.errors.iter().map(StoredErrors::of).collect(),
             }),
+            refined: self.refined_errors().map(Cow::Borrowed),
         };
         MODEL.encode(&payload)
     }
@@ -101,7 +104,8 @@ impl Estimator {
     /// Bytes that are no model, of another format, truncated, corrupt, or whose parts do not
     /// fit each other.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let Payload { rig, hand, descriptor, regression, errors, subsets } = MODEL.decode(bytes)?;
+        let Payload { rig, hand, descriptor, regression, errors, subsets, refined } =
+            MODEL.decode(bytes)?;
         let regression = match regression {
             Stored::Joint(parts) => Model::from_parts(parts.into_owned())?.into(),
             Stored::Projected(models) => FittedRegressor::Projected(models.into_owned()),
@@ -109,6 +113,10 @@ impl Estimator {
         };
         let (rig, hand) = (rig.into_owned(), hand.into_owned());
         let estimator = Self::from_parts(rig, hand, descriptor.into_owned(), regression)?;
+        let estimator = match refined {
+            Some(refined) => estimator.with_refined_errors(refined.into_owned())?,
+            None => estimator,
+        };
         let estimator = match errors {
             Some(errors) => estimator.with_error_model(errors.read()?)?,
             None => estimator,

@@ -7,6 +7,7 @@ pub(crate) mod partial;
 pub(crate) mod plan;
 pub(crate) mod preset;
 pub(crate) mod recipe;
+pub(crate) mod refined_trials;
 pub(crate) mod regressor;
 pub(crate) mod samples;
 pub(crate) mod shard;

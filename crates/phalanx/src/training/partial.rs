@@ -21,7 +21,7 @@ use crate::training::samples::Samples;
 use crate::training::shard::{BLOCK, Shard, scenes_of};
 use crate::training::statistics::TrainingStatistics;
 
-const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 7 };
+const PART: Container = Container { what: "training part", mark: *b"PHXPART\0", format: 8 };
 
 /// What one [`Shard`] of a training has seen: enough to be [merged](Self::merge) with the others'
 /// and to [`finish`](Self::finish) the estimator. For most regressors that is sums, whose size does
@@ -48,6 +48,8 @@ pub struct PartialTraining {
 pub(crate) struct ErrorScenes {
     pub(crate) sampler: SceneSampler,
     pub(crate) count: usize,
+    /// How many of another draw are refined.
+    pub(crate) refined: usize,
 }
 
 impl Training {
@@ -278,9 +280,9 @@ impl PartialTraining {
         let estimator = Estimator::from_parts(rig.clone(), hand.clone(), descriptor, regression)?
             .with_subsets(subsets)?;
         match self.errors {
-            Some(ErrorScenes { sampler, count }) => {
-                estimator.fit_error_model(&sampler.scenes(&rig, &hand, count), progress)
-            }
+            Some(ErrorScenes { sampler, count, refined }) => estimator
+                .fit_error_model(&sampler.scenes(&rig, &hand, count), progress)?
+                .fit_refined_errors(&sampler.fresh(), refined, progress),
             None => Ok(estimator),
         }
     }

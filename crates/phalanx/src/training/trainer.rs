@@ -51,6 +51,12 @@ impl Trainer {
     /// Scenes that the error model is fitted to.
     pub const ERROR_SAMPLES: usize = 4000;
 
+    /// Scenes of strangers and of the hand as given that are refined at most to learn how refined estimates err.
+    const REFINED_SAMPLES: usize = 160;
+
+    /// For so many scenes that are learnt from one is refined, which takes as long as to learn from some 25.
+    const PER_REFINED: usize = 80;
+
     /// As a preset says: whole pictures, random poses with every [`Augmentation`], an error model.
     pub fn preset(preset: Preset) -> Self {
         Self::new(preset.training(), preset.scenes())
@@ -138,12 +144,20 @@ impl Trainer {
         SceneSampler { augmentation: self.augmentation.clone(), ..sampler }
     }
 
+    /// How many scenes are refined.
+    fn refined_samples(&self) -> usize {
+        (self.samples / Self::PER_REFINED).min(Self::REFINED_SAMPLES)
+    }
+
     /// What training through so many views takes in one run.
     pub fn cost(&self, views: usize, shard: Shard) -> Cost {
         let own = shard.scenes(self.samples);
         let pilot = self.samples.min(self.training.regressor.pilot());
         let codebook = self.samples.min(Training::CODEBOOK_SCENES);
-        let errors = if shard == Shard::WHOLE { self.error_samples } else { 0 };
+        let errors = match (shard, self.error_samples) {
+            (Shard::WHOLE, 1..) => self.error_samples + self.refined_samples(),
+            _ => 0,
+        };
         Cost {
             scenes: codebook.saturating_add(pilot).saturating_add(own).saturating_add(errors),
             bytes: self.training.bytes(views, codebook, pilot, own),
@@ -192,7 +206,11 @@ impl Trainer {
         let sampler = self.sampler();
         sampler.check()?;
         let scenes = sampler.scenes(rig, hand, self.samples);
-        let errors = ErrorScenes { sampler: sampler.fresh(), count: self.error_samples };
+        let errors = ErrorScenes {
+            sampler: sampler.fresh(),
+            count: self.error_samples,
+            refined: self.refined_samples(),
+        };
         let begun = self.training.begin(rig, hand, &scenes, progress)?;
         let begun = begun.with_error_scenes((self.error_samples > 0).then_some(errors));
         let mut part = match earlier {

@@ -88,7 +88,7 @@ fn a_flipped_bit_is_noticed() {
         let error = Estimator::from_bytes(&flipped).unwrap_err();
         let expected = match bit / 8 {
             0..8 => matches!(error, Error::ForeignFile { .. }),
-            8..12 => matches!(error, Error::FileVersion { known: 9, .. }),
+            8..12 => matches!(error, Error::FileVersion { known: 10, .. }),
             12..20 => matches!(error, Error::FileLength { .. }),
             _ => matches!(error, Error::FileChecksum { .. }),
         };
@@ -103,8 +103,8 @@ fn other_files_and_formats_are_refused_by_name() {
         assert_eq!(message(foreign), "not a phalanx model: the file does not begin with its mark");
     }
     let mut newer = bytes();
-    newer[8..12].copy_from_slice(&10_u32.to_le_bytes());
-    let expected = "the model has format 10; this version reads format 9: train again, or use the \
+    newer[8..12].copy_from_slice(&11_u32.to_le_bytes());
+    let expected = "the model has format 11; this version reads format 10: train again, or use the \
                     version that wrote it";
     assert_eq!(message(&newer), expected);
     let mut endless = bytes();

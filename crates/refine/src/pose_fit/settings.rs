@@ -86,6 +86,12 @@ impl PoseFitSettings {
         Self { noise, levels: levels.into_iter().map(level).collect(), ..Self::default() }
     }
 
+    /// The default for a hand and cameras that may not be as they are given.
+    #[must_use]
+    pub fn of_strangers() -> Self {
+        Self { nuisance: Some(NuisanceParameters::default()), ..Self::default() }
+    }
+
     /// The measure of the last level.
     pub(crate) fn finest(&self) -> RobustLoss {
         self.loss(self.levels.last().expect("checked"))

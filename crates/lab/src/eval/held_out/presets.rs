@@ -7,7 +7,7 @@ use phalanx::{
     Workspace, targets,
 };
 use phalanx_hand::{Dof, Pose};
-use phalanx_refine::{NuisanceParameters, PoseFitSettings};
+use phalanx_refine::PoseFitSettings;
 use phalanx_segmentation::{Mask, Silhouette};
 use rayon::prelude::*;
 
@@ -119,10 +119,7 @@ impl Learnt {
         let mean = Dof::ALL.map(|dof| {
             set.poses.iter().map(|pose| pose[dof]).sum::<f64>() / set.poses.len() as f64
         });
-        let refinement = PoseFitSettings {
-            nuisance: Some(NuisanceParameters::default()),
-            ..PoseFitSettings::default()
-        };
+        let refinement = PoseFitSettings::of_strangers();
         let refiner = refined::refiner(&estimator, ground, refinement)?;
         let mean = Pose(mean);
         Ok(Self { answers, refiner, preset, train: set.name, samples, views, estimator, mean })

@@ -1,15 +1,16 @@
 //! `cargo xtask eval-subsets`: one model that answers any of its cameras, beside one for just these; writes
 //! docs/results/subsets.md.
 
-use std::fmt::Write;
+mod page;
+
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
-use comfy_table::{Table, presets};
-use phalanx::{Cameras, Estimate, Mask, Picture, Progress, Trainer, Workspace};
+use phalanx::{Cameras, Estimate, Estimator, Mask, Picture, Progress, Refiner, Trainer, Workspace};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, Pose};
+use phalanx_refine::PoseFitSettings;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -23,8 +24,9 @@ use crate::progress;
 use crate::recipes::preset_name::PresetName;
 
 const TESTS: [Test; 2] = [Test::Unseen, Test::All];
-/// Of so many samples of a test one is looked at; shares no factor with the hands in `all`.
-const EVERY: usize = 3;
+/// Of so many samples of a test one is looked at, and one is refined, which takes a hundred times as long; no
+/// factor is shared with the hands in `all`.
+const EVERY: [(Answer, usize); 2] = [(Answer::Estimated, 3), (Answer::Refined, 75)];
 /// How many standard deviations hold these shares of a normal distribution.
 const PROMISED: [f64; 2] = [1.0, 1.96];
 
@@ -41,11 +43,25 @@ pub struct Arguments {
     json: Option<PathBuf>,
 }
 
+/// What is asked for.
+#[derive(Clone, Copy, PartialEq, Serialize)]
+enum Answer {
+    Estimated,
+    Refined,
+}
+
+/// A model that is asked.
+struct Asked<'a> {
+    estimator: &'a Estimator,
+    refiner: Refiner,
+}
+
 /// Some of the cameras on one test.
 #[derive(Serialize)]
 struct Row {
     preset: String,
     test: &'static str,
+    answer: Answer,
     cameras: String,
     /// Of the model of any cameras, and of one for these alone.
     any: Score,
@@ -100,7 +116,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let samples = arguments.samples.map_or_else(String::new, |n| format!(" --samples {n}"));
     let command = format!("cargo xtask eval-subsets --presets {}{samples}", names.join(","));
     let title = "Some of the cameras";
-    Page { file: "subsets.md", command: &command, title }.publish(&body(&figures)?)
+    Page { file: "subsets.md", command: &command, title }.publish(&page::body(&figures)?)
 }
 
 /// Learns by a preset from all cameras and from each subset alone, and tests both.
@@ -130,8 +146,13 @@ fn measure(
         all_bytes: all.to_bytes()?.len(),
         any_bytes: any.to_bytes()?.len(),
     });
-    let tests = TESTS.map(|test| Seen::of(test, (rig, &hand), EVERY, progress));
-    let tests = tests.into_iter().collect::<Result<Vec<_>>>()?;
+    let mut tests = Vec::new();
+    for test in TESTS {
+        for (answer, every) in EVERY {
+            tests.push((answer, Seen::of(test, (rig, &hand), every, progress)?));
+        }
+    }
+    let of_any = Asked::new(&any)?;
     for views in subsets(rig.cameras.len()) {
         let names: Vec<&str> = views.iter().map(|&view| rig.cameras[view].name.as_str()).collect();
         let own = if views.len() == rig.cameras.len() {
@@ -139,26 +160,51 @@ fn measure(
         } else {
             learn(&rig.select(&names)?, Cameras::All)?.1
         };
-        for seen in &tests {
+        let of_own = Asked::new(&own)?;
+        for (answer, seen) in &tests {
             figures.rows.push(Row {
                 preset: preset.clone(),
                 test: seen.test,
+                answer: *answer,
                 cameras: names.join(", "),
                 any: seen.score(|masks, workspace| {
                     let picture = |view: usize| views.contains(&view).then_some(&masks[view]);
                     let pictures: Vec<Option<Picture<'_>>> =
                         (0..masks.len()).map(|view| picture(view).map(Picture::Mask)).collect();
-                    any.estimate(&pictures, workspace)
+                    of_any.answer(*answer, &pictures, workspace)
                 })?,
                 own: seen.score(|masks, workspace| {
                     let pictures: Vec<Picture<'_>> =
                         views.iter().map(|&view| Picture::Mask(&masks[view])).collect();
-                    own.estimate(&pictures, workspace)
+                    of_own.answer(*answer, &pictures, workspace)
                 })?,
             });
         }
     }
     Ok(())
+}
+
+impl<'a> Asked<'a> {
+    fn new(estimator: &'a Estimator) -> Result<Self> {
+        let refiner = Refiner::for_estimator(estimator, PoseFitSettings::of_strangers())?;
+        Ok(Self { estimator, refiner })
+    }
+
+    fn answer<'p, P>(
+        &self,
+        answer: Answer,
+        pictures: &[P],
+        workspace: &mut Workspace,
+    ) -> phalanx::Result<Estimate>
+    where
+        P: Into<Option<Picture<'p>>> + Copy,
+    {
+        let estimate = self.estimator.estimate(pictures, workspace)?;
+        match answer {
+            Answer::Estimated => Ok(estimate),
+            Answer::Refined => Ok(self.refiner.refine_estimate(self.estimator, estimate)?.refined),
+        }
+    }
 }
 
 /// All subsets of so many cameras, the smaller ones first.
@@ -198,69 +244,4 @@ impl Seen {
             doubted: mean(4),
         })
     }
-}
-
-fn body(figures: &Figures) -> Result<String> {
-    let mut text = String::from(
-        "One model is learnt from all cameras of the desk and asked about some of them, beside a model that is learnt\n\
-         from just these (`own`), by the same preset from as many scenes. Errors and standard deviations are means over\n\
-         the 21 active angles, degrees; 68 % and 95 % are the shares of angles within as many deviations as should hold\n\
-         so many. *Doubted* are answers with any doubt. Every 3rd sample of each test.\n",
-    );
-    for Cost { preset, samples, all_s, any_s, all_bytes, any_bytes } in &figures.costs {
-        write!(
-            text,
-            "\n## {preset}\n\nFrom {samples} scenes. To learn any cameras takes {:.2} of the time of all alone ({any_s:.0} s and {all_s:.0} s \
-             of one core), and the file {:.1} MiB in place of {:.1} MiB.\n",
-            any_s / all_s,
-            mebibytes(*any_bytes),
-            mebibytes(*all_bytes)
-        )?;
-        for test in TESTS {
-            let rows = figures.rows.iter();
-            let rows = rows.filter(|row| row.preset == *preset && row.test == test.name());
-            write!(text, "\n`{}`:\n\n{}\n", test.name(), table(rows))?;
-        }
-    }
-    Ok(text)
-}
-
-fn table<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN).set_header([
-        "cameras",
-        "error",
-        "own",
-        "ratio",
-        "deviation",
-        "own",
-        "68 %",
-        "own",
-        "95 %",
-        "own",
-        "doubted",
-        "own",
-    ]);
-    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
-    for Row { cameras, any, own, .. } in rows {
-        table.add_row([
-            cameras.clone(),
-            format!("{:.2}", any.error_deg),
-            format!("{:.2}", own.error_deg),
-            format!("{:.2}", any.error_deg / own.error_deg),
-            format!("{:.2}", any.std_deg),
-            format!("{:.2}", own.std_deg),
-            percent(any.within[0]),
-            percent(own.within[0]),
-            percent(any.within[1]),
-            percent(own.within[1]),
-            percent(any.doubted),
-            percent(own.doubted),
-        ]);
-    }
-    table
-}
-
-fn mebibytes(bytes: usize) -> f64 {
-    bytes as f64 / f64::from(1 << 20)
 }
