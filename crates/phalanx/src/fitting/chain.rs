@@ -45,3 +45,99 @@ fn chosen(hypotheses: &[Vec<Found>], motion: &Motion) -> Vec<Option<usize>> {
     }
     chosen
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DAffine3;
+    use phalanx_hand::{Dof, Pose};
+    use phalanx_refine::PoseFit;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// A pose with one joint bent, which what was seen speaks against so much.
+    fn found((bent, energy): (f64, f64)) -> Found {
+        let mut pose = Pose::REST;
+        pose[Dof::IndexPip] = bent;
+        let refined = PoseFit {
+            pose,
+            covariance: Vec::new(),
+            ious: Vec::new(),
+            unexplained: Vec::new(),
+            landmarks_unexplained: Vec::new(),
+            boundary_rms_px: 0.0,
+            nuisance_fitted: false,
+            energy,
+            converged: true,
+            steps: 0,
+        };
+        let (crops, points, left_out) = (Vec::new(), Vec::new(), Vec::new());
+        Found { rest: DAffine3::IDENTITY, refined, crops, points, left_out, misfit: 0.0 }
+    }
+
+    /// What speaks against one pose of each frame that has any.
+    fn against(hypotheses: &[Vec<Found>], motion: &Motion, choice: &[Option<usize>]) -> f64 {
+        let frames = hypotheses.iter().zip(choice).enumerate();
+        let chain: Vec<(usize, &Found)> =
+            frames.filter_map(|(k, (frame, own))| Some((k, &frame[(*own)?]))).collect();
+        let seen: f64 = chain.iter().map(|(_, found)| found.refined.energy).sum();
+        let moved = |pair: &[(usize, &Found)]| {
+            let [(before, one), (after, other)] = [pair[0], pair[1]];
+            motion.against(&one.refined.pose, &other.refined.pose, after - before)
+        };
+        seen + chain.windows(2).map(moved).sum::<f64>()
+    }
+
+    /// Every way to choose a pose of each frame that has any.
+    fn choices(hypotheses: &[Vec<Found>]) -> Vec<Vec<Option<usize>>> {
+        hypotheses.iter().fold(vec![Vec::new()], |ways, frame| {
+            let own: Vec<Option<usize>> = match frame.len() {
+                0 => vec![None],
+                count => (0..count).map(Some).collect(),
+            };
+            let with = |way: &Vec<Option<usize>>| {
+                let way = way.clone();
+                own.iter().map(move |own| [&way[..], &[*own]].concat()).collect::<Vec<_>>()
+            };
+            ways.iter().flat_map(with).collect()
+        })
+    }
+
+    proptest! {
+        #![proptest_config(crate::property::cases(64))]
+
+        #[test]
+        fn no_other_choice_is_likelier(
+            frames in prop::collection::vec(
+                prop::collection::vec((-1.0..1.0_f64, 0.0..20.0_f64), 0..4),
+                1..6,
+            ),
+            usual in 0.05..0.5_f64,
+        ) {
+            let frame = |frame: Vec<(f64, f64)>| frame.into_iter().map(found).collect();
+            let hypotheses: Vec<Vec<Found>> = frames.into_iter().map(frame).collect();
+            let known = [0.0, usual].map(|bent| Some(found((bent, 0.0))));
+            let motion = Motion::of(&known).expect("one frame follows another");
+            let chosen = chosen(&hypotheses, &motion);
+            let own = against(&hypotheses, &motion, &chosen);
+            for other in choices(&hypotheses) {
+                let is_answered = chosen.iter().map(Option::is_some);
+                prop_assert!(is_answered.eq(other.iter().map(Option::is_some)));
+                prop_assert!(own <= against(&hypotheses, &motion, &other) + 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn a_pose_that_nothing_before_or_after_leads_to_is_not_taken() {
+        let usual = |k: u32| found((0.02 * f64::from(k), 5.0));
+        let mut hypotheses: Vec<Vec<Found>> = (0..7).map(|k| vec![usual(k)]).collect();
+        // It explains the picture a little better.
+        hypotheses[3].insert(0, found((1.5, 4.5)));
+        let bent: Vec<f64> = likeliest(hypotheses)
+            .into_iter()
+            .map(|found| found.expect("every frame has a pose").refined.pose[Dof::IndexPip])
+            .collect();
+        assert!(bent.iter().zip(0..).all(|(bent, k)| (bent - 0.02 * f64::from(k)).abs() < 1e-12));
+    }
+}
