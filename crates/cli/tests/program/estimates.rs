@@ -367,6 +367,9 @@ fn a_recorded_background_and_an_own_model_of_skin_tell_the_hand() {
         assert_eq!(outcome.code, Some(0), "{}", outcome.err);
         assert!(outcome.out.contains(said), "{}", outcome.out);
     }
+    let outcome = learn(&["--empty", "empty", "--out", "background", "--json"]);
+    let said: serde_json::Value = serde_json::from_str(&outcome.out).unwrap();
+    assert!(said.is_object(), "{said}");
     let expected = json(&desk, &MASKS);
     let pictures = ["hand/side/b.png", "hand/top/b.png"];
     for model in ["background", "own", "masked", "plain"] {

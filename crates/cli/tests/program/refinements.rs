@@ -43,6 +43,9 @@ fn a_hand_is_calibrated_and_used() {
     let hand = HandShape::from_toml(&hand).unwrap();
     let (own, given) = (hand.middle.base_mm.z, HandShape::adult().middle.base_mm.z);
     assert!((own / given - 1.0).abs() < 0.05, "{own} mm");
+    let done = run(desk.folder(), calibrate.iter().chain(&["--out", "again.toml", "--json"]));
+    let said: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    assert!(said.is_object() && desk.read("again.toml") == desk.read("me.toml"), "{said}");
     let with_it = ["--refine", "--hand", "me.toml"];
     let refined = desk.estimate(&[&with_it, &MASKS[..]].concat());
     assert_eq!(refined.code, Some(0), "{}", refined.err);

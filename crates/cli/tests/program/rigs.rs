@@ -58,6 +58,9 @@ fn a_calibration_becomes_a_rig_and_says_what_to_look_at() {
     ] {
         assert!(outcome.err.contains(part), "no '{part}' in: {}", outcome.err);
     }
+    let outcome = folder.run("import camera_array.toml --unit m --out rig.toml --json");
+    let said: serde_json::Value = serde_json::from_str(&outcome.out).unwrap();
+    assert_eq!(said["views"][0]["distance_mm"].as_f64().unwrap().round(), 500.0, "{said}");
     let rig = Rig::from_toml(&folder.read("rig.toml").unwrap()).unwrap();
     assert!(matches!(rig.cameras[0].intrinsics.lens, Lens::Fisheye(_)));
     assert_eq!(rig.cameras[1].extrinsics.translation.z, 600.0);

@@ -148,6 +148,34 @@ fn the_demo_goes_to_a_new_folder_and_to_no_other() {
     assert!(again.err.contains("not empty"), "{again:?}");
 }
 
+/// Photographs of a hand before a plain wall.
+#[test]
+fn the_hand_is_told_as_segment_says() {
+    let desk = recorded(8);
+    for camera in CAMERAS {
+        for frame in 0..8 {
+            let name = format!("take/{camera}/{frame:04}.png");
+            let mask = desk.open(&name).to_luma8();
+            let colour = |level: u8| if level > 127 { [170, 110, 90] } else { [225, 225, 225] };
+            let photograph = image::RgbImage::from_fn(mask.width(), mask.height(), |x, y| {
+                image::Rgb(colour(mask.get_pixel(x, y).0[0]))
+            });
+            desk.save(&name, &photograph.into());
+        }
+    }
+    let given = ["track", "--rig", "rig.toml", "take", "--segment", "plain", "--out", "take.csv"];
+    let outcome = run(desk.folder(), given);
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    let error = error_mm(&take(&desk, "take.csv"));
+    assert!(error < 8.0, "{error} mm");
+    let given =
+        ["rig", "volume", "rig.toml", "take", "--segment", "plain", "--json", "--out", "v.toml"];
+    let outcome = run(desk.folder(), given);
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    let said: serde_json::Value = serde_json::from_str(&outcome.out).unwrap();
+    assert!(said.is_object(), "{said}");
+}
+
 /// What is wrong with a whole recording is said, not only frame by frame.
 #[test]
 fn a_recording_of_other_moments_or_cameras_is_told() {
