@@ -19,6 +19,7 @@ use crate::form::Form;
 use crate::input;
 use crate::progress::Bar;
 use phalanx_cli::files::Output;
+use phalanx_cli::parts;
 
 /// The rig of the examples: three cameras about a desk, `side`, `top` and `other_side`.
 const DESK: &str = include_str!("../fixtures/desk.toml");
@@ -202,17 +203,7 @@ fn finish(
 
 pub(crate) fn merge(arguments: &MergeArguments) -> Result<()> {
     let out = Output::new(&arguments.out, &arguments.parts)?;
-    let mut merged: Option<PartialTraining> = None;
-    for path in &arguments.parts {
-        let name = || path.display().to_string();
-        let part = PartialTraining::from_bytes(&std::fs::read(path).with_context(name)?)
-            .with_context(name)?;
-        match &mut merged {
-            None => merged = Some(part),
-            Some(merged) => merged.merge(part).with_context(name)?,
-        }
-    }
-    let merged = merged.context("there is no part")?;
+    let merged = parts::merged(&arguments.parts)?;
     if let [first, others @ ..] = merged.makers()
         && !others.is_empty()
     {

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Args;
-use phalanx::PartialTraining;
+use phalanx_cli::parts;
 
 use crate::files;
 use crate::progress;
@@ -25,18 +25,8 @@ pub struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let out = files::output(&arguments.out, &arguments.parts)?;
-    let mut merged: Option<PartialTraining> = None;
-    for path in &arguments.parts {
-        let name = || path.display().to_string();
-        let part = PartialTraining::from_bytes(&std::fs::read(path).with_context(name)?)
-            .with_context(name)?;
-        match &mut merged {
-            None => merged = Some(part),
-            Some(merged) => merged.merge(part).with_context(name)?,
-        }
-    }
+    let merged = parts::merged(&arguments.parts)?;
     let bar = progress::Bar::new();
-    let merged = merged.context("there is no part")?;
     let estimator = train::finish(merged, arguments.hypotheses, &bar)?;
     drop(bar);
     train::save(&estimator, &out)

@@ -2,32 +2,15 @@
 
 use std::sync::LazyLock;
 
-use phalanx::{
-    Encoding, Estimator, FittedRegressor, FixedPoses, LearntMetric, NoProgress, Preset,
-    RegressorConfig, Shard, Training,
-};
+use phalanx::{Encoding, Estimator, FittedRegressor, FixedPoses, NoProgress, Shard, Training};
 use phalanx_hand::HandShape;
 
 use crate::desk::{poses, top};
+use crate::few;
 use crate::roads;
 
-/// The fast preset with few of everything.
 fn training() -> Training {
-    let preset = Preset::Fast.training();
-    let RegressorConfig::LearntMetric(learnt) = preset.regressor else {
-        unreachable!("it learns one")
-    };
-    let mut metric = learnt.metric;
-    (metric.centres, metric.gradients, metric.rank) = (40, 30, 6);
-    let regressor = RegressorConfig::LearntMetric(LearntMetric {
-        components: 20,
-        centres: 40,
-        metric,
-        ..learnt
-    });
-    let mut vocabulary = preset.vocabulary;
-    (vocabulary.centres, vocabulary.most_samples) = (6, 2000);
-    Training { vocabulary, regressor, ..preset }
+    few::kernels(40, 6)
 }
 
 static LEARNT: LazyLock<Estimator> =

@@ -3,6 +3,7 @@
 mod damage;
 mod desk;
 mod estimating;
+mod few;
 mod hypotheses;
 mod invariance;
 mod learnt_metric;

@@ -3,33 +3,17 @@
 use std::sync::LazyLock;
 
 use phalanx::{
-    Error, Estimator, FittedRegressor, FixedPoses, NetworkTraining, NoProgress, PartialTraining,
-    Preset, RegressorConfig, Shard, Training,
+    Error, Estimator, FittedRegressor, FixedPoses, NoProgress, PartialTraining, RegressorConfig,
+    Shard, Training,
 };
 use phalanx_hand::{HandShape, Pose};
-use phalanx_rvm::MlpTrainer;
 
 use crate::desk::{poses, top};
+use crate::few;
 use crate::roads;
 
-/// The default preset with few of everything.
 fn training() -> Training {
-    let preset = Preset::default().training();
-    let RegressorConfig::Network(network) = preset.regressor else {
-        unreachable!("it is a network")
-    };
-    let perceptron = MlpTrainer {
-        hidden: vec![32; 3],
-        epochs: 400,
-        batch: 16,
-        dropout: 0.0,
-        ..network.perceptron
-    };
-    let regressor =
-        RegressorConfig::Network(NetworkTraining { components: 20, perceptron, ..network });
-    let mut vocabulary = preset.vocabulary;
-    (vocabulary.centres, vocabulary.most_samples) = (6, 2000);
-    Training { vocabulary, regressor, ..preset }
+    few::network(400, 6)
 }
 
 static LEARNT: LazyLock<Estimator> =

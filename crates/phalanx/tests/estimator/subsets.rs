@@ -3,59 +3,25 @@
 use std::sync::LazyLock;
 
 use phalanx::{
-    Cameras, Cause, Error, Estimate, Estimator, FixedPoses, LearntMetric, LossReason,
-    NetworkTraining, NoProgress, PartialTraining, Picture, Preset, Refiner, RegressorConfig, Shard,
-    Training, Workspace,
+    Cameras, Cause, Error, Estimate, Estimator, FixedPoses, LossReason, NoProgress,
+    PartialTraining, Picture, Refiner, RegressorConfig, Shard, Training, Workspace,
 };
 use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::PoseFitSettings;
-use phalanx_rvm::MlpTrainer;
 use phalanx_segmentation::Mask;
 
 use crate::desk::{ESTIMATOR, closing, difference_deg, masks, mean, poses, rig, unseen};
+use crate::few;
 
 /// All subsets of three cameras but the whole and the empty one.
 const SUBSETS: [&[usize]; 6] = [&[0], &[1], &[0, 1], &[2], &[0, 2], &[1, 2]];
 
-/// The fast preset with few of everything.
 fn kernels() -> Training {
-    let preset = Preset::Fast.training();
-    let RegressorConfig::LearntMetric(learnt) = preset.regressor else {
-        unreachable!("it learns distances")
-    };
-    let mut metric = learnt.metric;
-    (metric.centres, metric.gradients, metric.rank) = (80, 30, 6);
-    let regressor = RegressorConfig::LearntMetric(LearntMetric {
-        components: 20,
-        centres: 80,
-        metric,
-        ..learnt
-    });
-    few_centres(Training { regressor, ..preset })
+    few::kernels(80, 18)
 }
 
-/// The default preset likewise.
 fn network() -> Training {
-    let preset = Preset::Default.training();
-    let RegressorConfig::Network(network) = preset.regressor else {
-        unreachable!("it is a network")
-    };
-    let perceptron = MlpTrainer {
-        hidden: vec![32; 3],
-        epochs: 150,
-        batch: 16,
-        dropout: 0.0,
-        ..network.perceptron
-    };
-    let regressor =
-        RegressorConfig::Network(NetworkTraining { components: 20, perceptron, ..network });
-    few_centres(Training { regressor, ..preset })
-}
-
-fn few_centres(training: Training) -> Training {
-    let mut vocabulary = training.vocabulary;
-    (vocabulary.centres, vocabulary.most_samples) = (18, 2000);
-    Training { vocabulary, ..training }
+    few::network(150, 18)
 }
 
 /// Stages and angles between those that are learnt from.
