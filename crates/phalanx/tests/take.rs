@@ -2,7 +2,7 @@
 
 mod drawn;
 
-use drawn::{Drawn, cameras, drawn, hand, mean_error};
+use drawn::{Drawn, cameras, drawn, drawn_of, hand, mean_error};
 use glam::{DMat3, DVec3};
 use phalanx::{
     Delay, Error, FitDoubt, Missing, NoProgress, Proportions, TakeFrame, TakeSettings,
@@ -30,6 +30,34 @@ fn a_take_is_fitted_from_masks_alone() {
     assert!(fit.volume.volume.center.distance(DVec3::new(18.0, 0.0, -10.0)) < 25.0);
     let alone = fit_frame(&cameras, &frames[3], &fit).expect("a fit");
     assert!(mean_error(&alone.joints, &joints[3]) < 8.0, "a frame alone");
+}
+
+#[test]
+fn a_childs_hand_is_found() {
+    let small = hand().scaled(|| 0.7);
+    let Drawn { cameras, frames, joints } = drawn_of(&small, 6);
+    let fit = fit_take(&cameras, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
+    let (found, drawn) = (fit.hand.length_mm(), small.length_mm());
+    assert!((found / drawn - 1.0).abs() < 0.05, "{found:.0} mm in place of {drawn:.0} mm");
+    let errors: Vec<f64> =
+        fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
+    assert!(errors.iter().sum::<f64>() / 6.0 < 6.0, "{errors:.1?}");
+}
+
+#[test]
+fn one_camera_says_how_little_it_knows_of_the_distance() {
+    let Drawn { cameras, frames, joints } = drawn(6);
+    let of_top = |frame: &TakeFrame| TakeFrame::of_masks(vec![frame.masks[1].clone()]);
+    let frames: Vec<TakeFrame> = frames.iter().map(of_top).collect();
+    let fit = fit_take(&cameras[1..2], &frames, &TakeSettings::default(), &NoProgress);
+    let fit = fit.expect("a fit");
+    for (fit, truth) in fit.frames.iter().zip(&joints) {
+        let (error, std) = (mean_error(&fit.joints, truth), fit.joint_std[9]);
+        let distance = truth[9].distance(cameras[1].centre());
+        // Hands differ in size by some 13 %, and the one that it is taken for is 6 % shorter.
+        assert!(error < 0.2 * distance, "{error:.0} mm of {distance:.0} mm");
+        assert!((0.08..0.5).contains(&(std / distance)), "{std:.0} mm of {distance:.0} mm");
+    }
 }
 
 #[test]

@@ -149,7 +149,7 @@ fn points_beside_silhouettes_tell_a_finger_before_the_palm() {
         apart(&hand, &fit.pose, &truth)
     };
     let (alone, both) = (fit(&[]), fit(&landmarks[1..]));
-    assert!(both < 0.5 * alone, "{alone} {both}");
+    assert!(both < 0.6 * alone, "{alone} {both}");
     // More is known of it with both.
     let evidence = Evidence { silhouettes: &masks, landmarks: &landmarks };
     let mut unknown = vec![0.06];

@@ -7,6 +7,7 @@ pub mod angles;
 pub mod constant;
 pub(crate) mod contact_sheet;
 pub mod deviation;
+pub(crate) mod drawn_takes;
 pub mod frame;
 pub mod landmarks;
 pub mod lose;

@@ -95,6 +95,15 @@ impl Found {
         self.left_out[self.crops.len() + camera]
     }
 
+    /// Of how many cameras something is used.
+    pub(super) fn cameras_used(&self) -> usize {
+        let is_used = |&camera: &usize| {
+            self.crops[camera].is_some() && !self.left_out[camera]
+                || self.points[camera].is_some() && !self.left_out_points(camera)
+        };
+        (0..self.crops.len()).filter(is_used).count()
+    }
+
     /// The pose in another frame of rest.
     pub(super) fn pose_in(&self, rest: &DAffine3, hand: &HandShape) -> Pose {
         starts::in_frame(&self.refined.pose, &self.rest, rest, hand)

@@ -17,6 +17,7 @@ mod passes;
 mod points;
 mod proportions;
 mod report;
+mod size;
 mod starts;
 mod take;
 mod take_frame;

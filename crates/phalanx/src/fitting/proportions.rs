@@ -65,7 +65,8 @@ pub(super) fn learn(
         let Seen { silhouettes: observations, landmarks } = evidence;
         BundleFrame { observations, landmarks, start, prior: fitter.prior.clone() }
     };
-    let is_right = |found: &&Found| views::is_right(fitter, found);
+    // One camera does not tell a hand's size from its distance.
+    let is_right = |found: &&Found| Ok(found.cameras_used() > 1 && views::is_right(fitter, found)?);
     let right: Vec<bool> = found.par_iter().map(is_right).collect::<Result<_>>()?;
     let found: Vec<&Found> =
         found.into_iter().zip(right).filter(|(_, right)| *right).map(|(found, _)| found).collect();

@@ -14,6 +14,7 @@ use super::observation::{Sight, fitted_hand};
 use super::passes;
 use super::proportions::{self, HandEvidence, KnownHand};
 use super::report::{FrameFit, Reporter};
+use super::size;
 use super::starts;
 use super::take_frame::TakeFrame;
 use super::views;
@@ -96,6 +97,9 @@ pub fn fit_take(
     let mut take = Take::of(cameras, &settings.hand, &prior, &refinement);
     let keys = consensus::key_frames(cameras, frames, &take.fitter(Weights::Relative), progress)?;
     let middle = consensus::agreed(&keys, &take.hand.shape)?;
+    if settings.proportions == Proportions::FromTake {
+        take.find_size(frames, &middle, progress)?;
+    }
     let found =
         passes::first(cameras, frames, &take.fitter(Weights::Relative), &[middle], progress)?;
     let fitter = take.fitter(Weights::Relative);
@@ -197,6 +201,20 @@ impl<'a> Take<'a> {
         };
         let Self { prior, refinement, hand, .. } = self;
         FrameFitter { hand: &hand.shape, prior, refinement, weights }
+    }
+
+    /// Finds out roughly how large the hand is, near a place.
+    fn find_size(
+        &mut self,
+        frames: &[TakeFrame],
+        place: &DAffine3,
+        progress: &dyn Progress,
+    ) -> Result<()> {
+        let fitter = self.fitter(Weights::Relative);
+        let size = size::of_hand(&fitter, self.cameras, frames, place, progress)?;
+        self.mean = self.mean.scaled(|| size);
+        self.hand = KnownHand::anyone(&self.mean);
+        Ok(())
     }
 
     /// Finds out how well borders and points are known.

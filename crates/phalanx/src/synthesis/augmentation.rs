@@ -58,6 +58,16 @@ pub enum MaskNoise {
     Boundary,
 }
 
+impl MaskNoise {
+    /// Does it to a silhouette; the same with the same seed.
+    pub fn apply(self, mask: &mut Mask, seed: u64) {
+        match self {
+            Self::None => {}
+            Self::Boundary => make_ragged(mask, seed),
+        }
+    }
+}
+
 /// What estimators are meant to stand: a hand of its own for every scene, its bones and radii within
 /// 10 % of the given one's, as far as adults' differ; cameras turned by up to 3°, as far as a tripod that
 /// was touched; ragged silhouettes.

@@ -45,7 +45,12 @@ fn pose(frame: usize) -> Pose {
 }
 
 pub(crate) fn drawn(count: usize) -> Drawn {
-    let (cameras, hand, rest) = (cameras(), hand(), DAffine3::IDENTITY);
+    drawn_of(&hand(), count)
+}
+
+/// The same of another hand.
+pub(crate) fn drawn_of(hand: &HandShape, count: usize) -> Drawn {
+    let (cameras, rest) = (cameras(), DAffine3::IDENTITY);
     let mut renderers: Vec<Renderer> =
         cameras.iter().map(|camera| Renderer::new(camera).expect("a camera")).collect();
     let (mut frames, mut joints) = (Vec::new(), Vec::new());

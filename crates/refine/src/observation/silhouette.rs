@@ -140,6 +140,12 @@ impl SilhouetteObservation {
         focal / self.camera.extrinsics.to_camera(at).length() / self.grain
     }
 
+    /// By which share pixels at a point of the world grow as it moves by a millimetre: the slope of their logarithm.
+    pub(crate) fn nearer(&self, at: DVec3) -> DVec3 {
+        let away = at - self.camera.centre();
+        -away / away.length_squared()
+    }
+
     /// Which way the background is from each edge.
     pub(crate) fn normals(&self) -> &[DVec2] {
         &self.normals

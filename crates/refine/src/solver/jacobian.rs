@@ -152,16 +152,26 @@ impl Rows {
                 continue;
             }
             for dof in bone.dofs() {
-                if let Some(slot) = self.slots[dof.index()] {
-                    let slope = weight * normal.dot(twists.of(dof).velocity(moment / weight));
-                    match self.own.iter_mut().find(|(other, _)| *other == slot) {
-                        Some((_, sum)) => *sum += slope,
-                        None => self.own.push((slot, slope)),
-                    }
-                }
+                let slope = weight * normal.dot(twists.of(dof).velocity(moment / weight));
+                self.add(dof, slope);
             }
         }
         self.own.sort_unstable_by_key(|&(slot, _)| slot);
+    }
+
+    /// What a shift of the whole hand, in the frame at rest, adds to the slopes of its pose.
+    pub(crate) fn of_translation(&mut self, slopes: DVec3) {
+        for (dof, slope) in [Dof::TX, Dof::TY, Dof::TZ].into_iter().zip(slopes.to_array()) {
+            self.add(dof, slope);
+        }
+    }
+
+    fn add(&mut self, dof: Dof, slope: f64) {
+        let Some(slot) = self.slots[dof.index()] else { return };
+        match self.own.iter_mut().find(|(other, _)| *other == slot) {
+            Some((_, sum)) => *sum += slope,
+            None => self.own.push((slot, slope)),
+        }
     }
 
     /// The slopes of how deep two digits are in each other.

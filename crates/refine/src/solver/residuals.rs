@@ -1,8 +1,11 @@
 //! The energy of one frame, residual by residual, and its normal equations.
 
+use glam::DVec3;
+
 use crate::error::Result;
 use crate::geometry::correspondence::ViewMatcher;
 use crate::geometry::self_collision::{Penetration, penetrations};
+use crate::observation::silhouette::SilhouetteObservation;
 use crate::priors::gaussian::GaussianPenalty;
 use crate::priors::nuisance::ExtrinsicsCorrection;
 use crate::solver::jacobian::{Place, Rows};
@@ -10,6 +13,37 @@ use crate::solver::landmark_residuals::{LandmarkResiduals, Slots};
 use crate::solver::loss::RobustLoss;
 use crate::solver::normal_equations::NormalEquations;
 use crate::solver::problem::{Frame, FrameParameters, Problem, SharedParameters};
+
+/// Where it is counted how many pixels a millimetre is.
+enum DistanceAt {
+    /// Where the hand is expected: its distance follows from where several views see it.
+    Rest(DVec3),
+    /// Where the hand is. One view sees rays pass a hand the nearer, in millimetres, the closer it comes to
+    /// the camera; only in pixels that says nothing for it.
+    Hand(DVec3),
+}
+
+impl DistanceAt {
+    fn of(problem: &Problem<'_>, frame: usize, parameters: &FrameParameters) -> Self {
+        if problem.frames[frame].evidence.views() > 1 {
+            return Self::Rest(problem.rest.translation);
+        }
+        Self::Hand(problem.rest.transform_point3(parameters.pose.translation()))
+    }
+
+    fn point(&self) -> DVec3 {
+        let (Self::Rest(point) | Self::Hand(point)) = *self;
+        point
+    }
+
+    /// By which share pixels grow as the pose moves by a millimetre, along the axes of the frame at rest.
+    fn slope(&self, seen: &SilhouetteObservation, problem: &Problem<'_>) -> DVec3 {
+        match self {
+            Self::Rest(_) => DVec3::ZERO,
+            Self::Hand(point) => problem.rest.matrix3.transpose() * seen.nearer(*point),
+        }
+    }
+}
 
 /// The energy of one frame and its normal equations.
 pub(crate) fn linearise(
@@ -42,9 +76,11 @@ pub(crate) fn linearise(
     let mut rows = Rows::new(prior.dofs());
     let correction = |v: usize| parameters.corrections.get(v).or(shared.corrections.get(v));
     let pivot = problem.rest.translation;
+    let distance_at = DistanceAt::of(problem, frame, parameters);
     for (v, (view, seen)) in views.iter_mut().zip(evidence.silhouettes).enumerate() {
         let place = Place::new(seen.camera(), correction(v), pivot);
-        let scale = seen.pixels_per_mm(pivot);
+        let scale = seen.pixels_per_mm(distance_at.point());
+        let nearer = distance_at.slope(seen, problem);
         view.match_boundary(&place.seen(&posed.primitives), seen, loss.every)?;
         let distances = view.correspondences.iter().map(|found| scale * found.approach.distance);
         let distances: Vec<f64> = distances.collect();
@@ -59,6 +95,7 @@ pub(crate) fn linearise(
             let contact = place.contact(found, &posed, scale);
             rows.clear();
             rows.of_pose(&contact, &twists);
+            rows.of_translation(distance * nearer);
             rows.own.push((numbers + v, -1.0));
             if !parameters.corrections.is_empty() {
                 let first = corrections + ExtrinsicsCorrection::NUMBERS * v;
@@ -117,7 +154,6 @@ mod tests {
     use crate::geometry::sphere_hull::SphereHull;
     use crate::observation::evidence::Evidence;
     use crate::observation::landmarks::LandmarkObservation;
-    use crate::observation::silhouette::SilhouetteObservation;
     use crate::priors::nuisance::{CameraMotion, ExtrinsicsPrior, ShapePrior};
     use crate::priors::pose::PosePrior;
     use crate::solver::problem::FreeParameters;
@@ -169,6 +205,7 @@ mod tests {
         let mut energy = self_collision::energy(&posed);
         let Evidence { silhouettes, landmarks } = problem.frames[0].evidence;
         let pivot = problem.rest.translation;
+        let distance_at = DistanceAt::of(problem, 0, parameters);
         let correction = |v: usize| parameters.corrections.get(v).or(shared.corrections.get(v));
         for (k, seen) in landmarks.iter().enumerate() {
             let motion = problem.motion(parameters, shared, problem.frames[0].evidence.place_of(k));
@@ -181,7 +218,7 @@ mod tests {
         }
         for (v, (view, evidence)) in views.iter().zip(silhouettes).enumerate() {
             let place = Place::new(evidence.camera(), correction(v), pivot);
-            let scale = evidence.pixels_per_mm(pivot);
+            let scale = evidence.pixels_per_mm(distance_at.point());
             let extrinsics = &evidence.camera().extrinsics;
             let to_camera =
                 DAffine3::from_mat3_translation(extrinsics.rotation, extrinsics.translation);
@@ -201,6 +238,7 @@ mod tests {
     #[derive(Debug, Clone, Copy)]
     enum SeenAs {
         Silhouettes,
+        OneSilhouette,
         Landmarks,
         Both,
     }
@@ -216,7 +254,8 @@ mod tests {
             moves in prop_oneof![Just(CameraMotion::Static), Just(CameraMotion::PerFrame)],
             crossed in any::<bool>(),
             seen_as in prop_oneof![
-                Just(SeenAs::Silhouettes), Just(SeenAs::Landmarks), Just(SeenAs::Both),
+                Just(SeenAs::Silhouettes), Just(SeenAs::OneSilhouette),
+                Just(SeenAs::Landmarks), Just(SeenAs::Both),
             ],
         ) {
             let (rig, given) = (rig(), HandShape::adult());
@@ -243,6 +282,7 @@ mod tests {
                 cameras.iter().map(|camera| points(camera, &given, &truth, &rest)).collect();
             let evidence = match seen_as {
                 SeenAs::Silhouettes => Evidence::from(&evidence),
+                SeenAs::OneSilhouette => Evidence { silhouettes: &evidence[..1], landmarks: &[] },
                 SeenAs::Landmarks => Evidence::from(&landmarks),
                 SeenAs::Both => Evidence { silhouettes: &evidence, landmarks: &landmarks[..2] },
             };
