@@ -107,7 +107,9 @@ mod tests {
         }
         let refusal = |path: &str| assigned(&[path]).unwrap_err().to_string();
         assert_eq!(refusal("nowhere"), "nowhere: there is no such file or folder");
-        assert!(refusal("src").contains("src: it is to hold the recordings of all cameras"));
+        let empty = tempfile::tempdir().unwrap();
+        let said = refusal(&empty.path().display().to_string());
+        assert!(said.contains("it is to hold the recordings of all cameras"), "{said}");
     }
 
     #[test]
