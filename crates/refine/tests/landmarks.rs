@@ -1,7 +1,9 @@
 //! Poses and hands that are found by a detector's points, alone and beside silhouettes.
 
+mod desk;
 mod property;
 
+use desk::{bent, rig};
 use glam::{DAffine3, DVec2};
 use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Landmark, Landmarks, Pose};
@@ -14,20 +16,6 @@ use proptest::prelude::*;
 
 /// What a point of these detectors is off by, px: about 5 mm.
 const STD: f64 = 1.5;
-
-fn rig() -> Rig {
-    Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap()
-}
-
-fn bent(bends: [f64; 5]) -> Pose {
-    let mut pose = Pose::REST;
-    for (k, bend) in bends.into_iter().enumerate() {
-        pose.0[4 * k + 1] = 0.6 * bend;
-        pose.0[4 * k + 2] = bend;
-        pose.0[4 * k + 3] = 0.7 * bend;
-    }
-    pose
-}
 
 /// The joints in each camera's picture, off by what `noise` says of a point: its view and its joint.
 fn points(

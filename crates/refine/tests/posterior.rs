@@ -1,26 +1,13 @@
 //! How well a fitted pose is known: what must hold of any hand before the desk's cameras.
 
+mod desk;
 mod property;
 
+use desk::{bent, rig};
 use glam::DVec2;
-use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, JOINTS, Landmark, Landmarks, Pose};
 use phalanx_refine::{LandmarkObservation, PoseFitSettings, PosePrior, Posterior};
 use proptest::prelude::*;
-
-fn rig() -> Rig {
-    Rig::from_toml(include_str!("../fixtures/desk.toml")).unwrap()
-}
-
-fn bent(bends: [f64; 5]) -> Pose {
-    let mut pose = Pose::REST;
-    for (k, bend) in bends.into_iter().enumerate() {
-        pose.0[4 * k + 1] = 0.6 * bend;
-        pose.0[4 * k + 2] = bend;
-        pose.0[4 * k + 3] = 0.7 * bend;
-    }
-    pose
-}
 
 /// How well a pose is known from its joints in all pictures, where points are off by so many pixels.
 fn known(pose: &Pose, points_px: f64, prior: [f64; Dof::COUNT], hand_std: f64) -> Posterior {
