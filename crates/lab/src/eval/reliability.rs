@@ -219,7 +219,7 @@ fn body(found: &[Found], samples: usize) -> String {
          ![{}](reliability.svg)\n\n{table}\n\n\
          How large errors and deviations are, means. Refined deviations are scaled by what drawn scenes say, of strange hands\n\
          before turned cameras with ragged borders and of the hand as given; where tails are heavy, the interval that holds 95 %\n\
-         is wider than 1.96 deviations. Errors beyond eight of them are another posture of a finger that explains as much.\n\n\
+         is wider than 1.96 deviations. Why some errors are beyond eight of them was not looked into.\n\n\
          {sizes}\n",
         chart(found).words()
     )
