@@ -1,6 +1,6 @@
 //! K-means per iteration, on one thread, and the assignment of one silhouette's contexts.
 
-#[path = "../tests/histograms/mod.rs"]
+#[path = "../tests/codebook/histograms.rs"]
 mod histograms;
 
 use std::time::{Duration, Instant};

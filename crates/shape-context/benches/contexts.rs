@@ -1,6 +1,6 @@
 //! The shape contexts of one silhouette of 300 points, on one thread, in each orientation.
 
-#[path = "../tests/star/mod.rs"]
+#[path = "../tests/shape-context/star.rs"]
 mod star;
 
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -1,0 +1,4 @@
+//! The pages: what they hold, and what a browser makes of them.
+
+mod browser;
+mod reports;

@@ -1,0 +1,4 @@
+//! What the experiments stand on.
+
+mod files;
+mod scores;

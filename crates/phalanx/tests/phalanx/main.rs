@@ -1,0 +1,12 @@
+//! What a user of the library sees.
+
+mod default_preset;
+mod doubts;
+mod drawn;
+mod estimator;
+mod golden;
+mod landmarks;
+#[path = "../property/mod.rs"]
+mod property;
+mod take;
+mod windows;

@@ -1,0 +1,250 @@
+//! Whole takes of drawn hands, from masks and cameras alone.
+
+use glam::{DMat3, DVec3};
+use phalanx::{
+    Delay, Error, FitDoubt, Missing, NoProgress, Proportions, TakeFrame, TakeSettings,
+    TrackSettings, TrackedFrame, Tracker, estimate_volume, fit_frame, fit_take,
+};
+use phalanx_camera::{Camera, Extrinsics, Intrinsics};
+use phalanx_hand::{HandShape, Side};
+use phalanx_segmentation::Mask;
+
+use crate::drawn::{Drawn, cameras, drawn, drawn_of, hand, mean_error};
+
+#[test]
+fn a_take_is_fitted_from_masks_alone() {
+    let Drawn { cameras, frames, joints } = drawn(6);
+    let settings = TakeSettings::default();
+    let fit = fit_take(&cameras, &frames, &settings, &NoProgress).expect("a fit");
+    let errors: Vec<f64> =
+        fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    assert!(mean < 6.0, "{errors:.1?}");
+    for fit in &fit.frames {
+        assert!(fit.views.iter().all(|view| view.missing.is_none()), "{:?}", fit.views);
+        assert!(fit.joint_std.iter().all(|std| (0.1..60.0).contains(std)), "{:?}", fit.joint_std);
+    }
+    // Wherever it was thought to be, the arm is along +z and the hand near the world's origin.
+    assert!(fit.volume.volume.forearm.normalize().z > 0.95, "{:?}", fit.volume);
+    assert!(fit.volume.volume.center.distance(DVec3::new(18.0, 0.0, -10.0)) < 25.0);
+    let alone = fit_frame(&cameras, &frames[3], &fit).expect("a fit");
+    assert!(mean_error(&alone.joints, &joints[3]) < 8.0, "a frame alone");
+}
+
+#[test]
+fn a_childs_hand_is_found() {
+    let small = hand().scaled(|| 0.7);
+    let Drawn { cameras, frames, joints } = drawn_of(&small, 6);
+    let fit = fit_take(&cameras, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
+    let (found, drawn) = (fit.hand.length_mm(), small.length_mm());
+    assert!((found / drawn - 1.0).abs() < 0.05, "{found:.0} mm in place of {drawn:.0} mm");
+    let errors: Vec<f64> =
+        fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
+    assert!(errors.iter().sum::<f64>() / 6.0 < 6.0, "{errors:.1?}");
+}
+
+#[test]
+fn one_camera_says_how_little_it_knows_of_the_distance() {
+    let Drawn { cameras, frames, joints } = drawn(6);
+    let of_top = |frame: &TakeFrame| TakeFrame::of_masks(vec![frame.masks[1].clone()]);
+    let frames: Vec<TakeFrame> = frames.iter().map(of_top).collect();
+    let fit = fit_take(&cameras[1..2], &frames, &TakeSettings::default(), &NoProgress);
+    let fit = fit.expect("a fit");
+    for (fit, truth) in fit.frames.iter().zip(&joints) {
+        let (error, std) = (mean_error(&fit.joints, truth), fit.joint_std[9]);
+        let distance = truth[9].distance(cameras[1].centre());
+        // Hands differ in size by some 13 %, and the one that it is taken for is 6 % shorter.
+        assert!(error < 0.2 * distance, "{error:.0} mm of {distance:.0} mm");
+        assert!((0.08..0.5).contains(&(std / distance)), "{std:.0} mm of {distance:.0} mm");
+    }
+}
+
+#[test]
+fn a_view_that_shows_something_else_is_named_and_does_no_harm() {
+    let Drawn { cameras, mut frames, joints } = drawn(5);
+    for frame in &mut frames {
+        // A face that joins the hand.
+        let mask = frame.masks[1].as_mut().expect("drawn");
+        let hand = mask.hand_pixels();
+        let (x, y): (Vec<f64>, Vec<f64>) = hand.map(|[x, y]| (f64::from(x), f64::from(y))).unzip();
+        let middle = [x, y].map(|all| all.iter().sum::<f64>() / all.len() as f64);
+        let face = |x: u32, y: u32| {
+            let (dx, dy) = (f64::from(x) - middle[0], f64::from(y) - middle[1] + 40.0);
+            (dx / 35.0).powi(2) + (dy / 45.0).powi(2) < 1.0
+        };
+        *mask = Mask::from_fn(320, 240, |x, y| face(x, y) || mask.is_hand(x, y));
+    }
+    let fit = fit_take(&cameras, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
+    let named = fit.frames.iter().filter(|fit| fit.views[1].missing == Some(Missing::Disagrees));
+    assert!(
+        named.count() >= 4,
+        "{:?}",
+        fit.frames.iter().map(|fit| &fit.views).collect::<Vec<_>>()
+    );
+    let errors: Vec<f64> =
+        fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
+    assert!(errors.iter().sum::<f64>() / 5.0 < 12.0, "{errors:.1?}");
+}
+
+/// The same as it is seen in a mirror: x turns round in the world and in every picture.
+fn mirrored(camera: &Camera) -> Camera {
+    let flip = DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0));
+    let Extrinsics { rotation, translation } = camera.extrinsics;
+    let extrinsics =
+        Extrinsics { rotation: flip * rotation * flip, translation: flip * translation };
+    let cx = f64::from(camera.intrinsics.width) - camera.intrinsics.cx;
+    let intrinsics = Intrinsics { cx, ..camera.intrinsics };
+    Camera { intrinsics, extrinsics, ..camera.clone() }
+}
+
+#[test]
+fn a_left_hand_is_fitted_as_a_right_one_in_a_mirror() {
+    let Drawn { cameras, frames, .. } = drawn(4);
+    let right = fit_take(&cameras, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
+    let cameras: Vec<Camera> = cameras.iter().map(mirrored).collect();
+    let flip = |mask: &Mask| image::imageops::flip_horizontal(&**mask).into();
+    let flipped = |mask: &Option<Mask>| mask.as_ref().map(flip);
+    let of_frame =
+        |frame: &TakeFrame| TakeFrame::of_masks(frame.masks.iter().map(flipped).collect());
+    let frames: Vec<TakeFrame> = frames.iter().map(of_frame).collect();
+    let hand = HandShape { side: Side::Left, ..HandShape::adult() };
+    let settings = TakeSettings { hand, ..TakeSettings::default() };
+    let left = fit_take(&cameras, &frames, &settings, &NoProgress).expect("a fit");
+    assert_eq!(left.hand.side, Side::Left);
+    for (right, left) in right.frames.iter().zip(&left.frames) {
+        let seen = right.joints.map(|joint| joint * DVec3::new(-1.0, 1.0, 1.0));
+        let apart = mean_error(&left.joints, &seen);
+        assert!(apart < 3.0, "{apart:.1} mm");
+        assert_eq!(left.doubts.is_empty(), right.doubts.is_empty());
+    }
+}
+
+/// A camera and what it sees left of a column of its picture.
+fn cut(camera: &Camera, mask: &Mask, column: u32) -> (Camera, Mask) {
+    let intrinsics = Intrinsics { width: column, ..camera.intrinsics };
+    let seen = Mask::from_fn(column, mask.height(), |x, y| mask.is_hand(x, y));
+    (Camera { intrinsics, ..camera.clone() }, seen)
+}
+
+#[test]
+fn a_hand_that_is_cut_off_is_doubted() {
+    let Drawn { cameras, frames, joints } = drawn(4);
+    // Through the fingers, in the one view that shows them to the right of the wrist; with one other.
+    let across = |camera: &Camera, joint: usize| {
+        joints.iter().map(|all| camera.project(all[joint]).expect("before it").x).sum::<f64>() / 4.0
+    };
+    let is_to_the_right = |k: &usize| across(&cameras[*k], 12) > across(&cameras[*k], 0) + 40.0;
+    let first = (0..cameras.len()).find(is_to_the_right).expect("a view from the side");
+    let second = (first + 1) % cameras.len();
+    let column = across(&cameras[first], 9) as u32;
+    let mut seen = Vec::new();
+    for frame in &frames {
+        let [one, other] = [first, second].map(|k| frame.masks[k].clone().expect("drawn"));
+        let (camera, part) = cut(&cameras[first], &one, column);
+        seen.push((camera, TakeFrame::of_masks(vec![Some(part), Some(other)])));
+    }
+    let both = [seen[0].0.clone(), cameras[second].clone()];
+    let frames: Vec<TakeFrame> = seen.into_iter().map(|(_, frame)| frame).collect();
+    let fit = fit_take(&both, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
+    for fit in &fit.frames {
+        let is_cut_off = |doubt: &FitDoubt| matches!(doubt, FitDoubt::CutOff { view: 0 });
+        assert!(fit.doubts.iter().any(is_cut_off), "{:?}", fit.doubts);
+    }
+}
+
+#[test]
+fn a_take_without_a_hand_is_an_error() {
+    let cameras = cameras();
+    let nothing = TakeFrame::of_masks(vec![Some(Mask::new(320, 240)), None, None]);
+    let fit = fit_take(&cameras, &[nothing], &TakeSettings::default(), &NoProgress);
+    assert!(matches!(fit, Err(Error::NoHand)));
+    let short = TakeFrame::of_masks(vec![None]);
+    let volume = estimate_volume(&cameras, &[short], &HandShape::adult());
+    assert!(matches!(volume, Err(Error::PictureCount { .. })));
+}
+
+fn track(cameras: &[Camera], frames: &[TakeFrame], delay: Delay) -> Vec<TrackedFrame> {
+    let settings = TrackSettings { hand: hand(), proportions: Proportions::Given, delay };
+    let mut tracker = Tracker::new(cameras, &settings).expect("a hand");
+    let mut tracked = Vec::new();
+    for (k, frame) in frames.iter().enumerate() {
+        let due = tracker.push(k as f64 / 30.0, frame).expect("a frame");
+        assert_eq!(due.is_some(), delay == Delay::None || k > 0, "{k}");
+        tracked.extend(due);
+    }
+    tracked.extend(tracker.finish().expect("a frame"));
+    tracked
+}
+
+#[test]
+fn a_hand_is_tracked_frame_by_frame() {
+    let Drawn { cameras, frames, joints } = drawn(8);
+    for delay in [Delay::None, Delay::OneFrame] {
+        let tracked = track(&cameras, &frames, delay);
+        assert_eq!(tracked.len(), frames.len());
+        for (k, (frame, truth)) in tracked.iter().zip(&joints).enumerate() {
+            assert!((frame.time - k as f64 / 30.0).abs() < 1e-12);
+            let error = mean_error(&frame.fit.as_ref().expect("a hand").joints, truth);
+            assert!(error < 8.0, "{delay:?}, frame {k}: {error} mm");
+        }
+        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+        assert_eq!(alone.install(|| track(&cameras, &frames, delay)), tracked);
+    }
+}
+
+#[test]
+fn a_camera_that_is_lost_makes_poses_less_certain_and_none_makes_them_unseen() {
+    let Drawn { cameras, mut frames, joints } = drawn(9);
+    frames[4].masks[0] = None;
+    frames[6].masks.fill(None);
+    let tracked = track(&cameras, &frames, Delay::None);
+    let fit = |k: usize| tracked[k].fit.as_ref().expect("a hand");
+    let spread = |k: usize| fit(k).joint_std.iter().sum::<f64>();
+    assert!(spread(4) > spread(3) && spread(4) > spread(5), "{:?}", [3, 4, 5].map(spread));
+    assert!(mean_error(&fit(4).joints, &joints[4]) < 10.0);
+    assert_eq!(fit(6).doubts, [FitDoubt::NotSeen]);
+    assert!(fit(6).joint_std.iter().all(|std| std.is_infinite()));
+    for k in [7, 8] {
+        let error = mean_error(&fit(k).joints, &joints[k]);
+        assert!(error < 8.0, "frame {k} after the hand was lost: {error} mm");
+    }
+}
+
+#[test]
+fn a_hand_that_has_not_been_seen_yet_has_no_pose_and_time_goes_on() {
+    let Drawn { cameras, frames, .. } = drawn(1);
+    let mut tracker = Tracker::new(&cameras, &TrackSettings::default()).expect("a hand");
+    let nothing = TakeFrame::of_masks(vec![None; cameras.len()]);
+    assert_eq!(tracker.push(0.0, &nothing).expect("a frame"), None);
+    let first = tracker.push(0.1, &frames[0]).expect("a frame").expect("the one before");
+    assert_eq!(first, TrackedFrame { time: 0.0, fit: None });
+    assert!(tracker.world_from_hand().is_some());
+    let error = tracker.push(0.1, &frames[0]).expect_err("no time has passed");
+    assert!(matches!(error, Error::FrameTime { .. }), "{error}");
+}
+
+#[test]
+fn a_tracker_goes_on_from_its_state_as_if_it_had_never_stopped() {
+    let Drawn { cameras, mut frames, .. } = drawn(6);
+    frames[2].masks.fill(None);
+    let time = |k: usize| k as f64 / 30.0;
+    let whole = track(&cameras, &frames, Delay::OneFrame);
+    let settings =
+        TrackSettings { hand: hand(), proportions: Proportions::Given, delay: Delay::OneFrame };
+    let mut tracker = Tracker::new(&cameras, &settings).expect("a hand");
+    for (broken, frame) in frames.iter().enumerate() {
+        let state = tracker.state().expect("the hand is given");
+        let mut resumed = Tracker::resumed(&cameras, state).expect("a tracker");
+        let mut tracked = Vec::new();
+        for (k, frame) in frames.iter().enumerate().skip(broken) {
+            let due = resumed.push(time(k), frame).expect("a frame");
+            assert_eq!(due.is_some(), k > broken, "{k}");
+            tracked.extend(due);
+        }
+        tracked.extend(resumed.finish().expect("a frame"));
+        assert_eq!(tracked, whole[broken..]);
+        tracker.push(time(broken), frame).expect("a frame");
+    }
+    let learning = Tracker::new(&cameras, &TrackSettings::default()).expect("a hand");
+    assert!(learning.state().is_none());
+}
