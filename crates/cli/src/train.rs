@@ -2,19 +2,16 @@
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::Mutex;
-use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
-use phalanx::{
-    Cost, Error, Estimator, Framing, Losses, PartialTraining, Preset, Progress, Shard, Trainer,
-};
+use phalanx::{Error, Estimator, Framing, PartialTraining, Preset, Shard, Trainer};
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Pose, PoseTable};
 use serde_json::json;
 
 use crate::checkpoint::Checkpoint;
+use crate::forecast::Forecast;
 use crate::form::Form;
 use crate::input;
 use crate::progress::Bar;
@@ -147,7 +144,7 @@ pub(crate) fn train(arguments: &Arguments) -> Result<()> {
     let mut checkpoint = Checkpoint::beside(&out, ".unfinished");
     let earlier = unfinished(&checkpoint);
     if let Some(earlier) = &earlier {
-        forecast.bar.say(&format!("going on after {} scenes", earlier.seen()));
+        forecast.say(&format!("going on after {} scenes", earlier.seen()));
     }
     let mut keep = |part: &PartialTraining| checkpoint.keep(|| Ok(part.to_bytes()?));
     let part = trainer.resume_shard(&rig, &hand, shard, earlier, &mut keep, &forecast);
@@ -257,60 +254,4 @@ fn save(estimator: &Estimator, out: &Output, form: Form) -> Result<()> {
         let size = bytes.len().div_ceil(1024);
         format!("a model for the cameras {}; {size} KiB", names.join(", "))
     })
-}
-
-/// Says what a training takes: scenes and memory beforehand, and the time for drawing once some scenes
-/// are drawn. Shows the progress.
-struct Forecast {
-    bar: Bar,
-    cost: Cost,
-    /// When drawing began, and how many scenes are drawn; nothing once the time has been said.
-    drawn: Mutex<Option<(Instant, usize)>>,
-}
-
-impl Forecast {
-    /// Scenes by which the time is known.
-    const FIRST_BLOCK: usize = 256;
-
-    fn new(cost: Cost, views: usize) -> Self {
-        let Cost { scenes, bytes } = cost;
-        let mebibytes = bytes.div_ceil(1 << 20);
-        eprintln!("phalanx: {scenes} scenes to draw for {views} cameras; about {mebibytes} MiB");
-        Self { bar: Bar::new(), cost, drawn: Mutex::new(Some((Instant::now(), 0))) }
-    }
-
-    /// How long all scenes take, once the first block is drawn.
-    fn time(&self) -> Option<Duration> {
-        let mut drawn = self.drawn.lock().ok()?;
-        let (since, count) = drawn.as_mut()?;
-        *count += 1;
-        if *count < Self::FIRST_BLOCK {
-            return None;
-        }
-        let each = since.elapsed().div_f64(*count as f64);
-        *drawn = None;
-        Some(each.mul_f64(self.cost.scenes as f64))
-    }
-}
-
-impl Progress for Forecast {
-    fn begin(&self, stage: &str, items: usize) {
-        self.bar.begin(stage, items);
-    }
-
-    fn step(&self) {
-        self.bar.step();
-        if let Some(time) = self.time() {
-            let seconds = time.as_secs_f64();
-            let time = match seconds {
-                ..90.0 => format!("{seconds:.0} s"),
-                _ => format!("{:.0} min", seconds / 60.0),
-            };
-            self.bar.say(&format!("drawing takes about {time}, and then fitting its time"));
-        }
-    }
-
-    fn lost(&self, losses: &Losses, scenes: usize) {
-        self.bar.lost(losses, scenes);
-    }
 }

@@ -59,11 +59,13 @@ pub use synthesis::scene_describer::{
     PoseContexts, SceneDescriber, describe_each, draw_mask, draw_silhouette,
 };
 pub use training::cameras::Cameras;
+pub use training::learnt_metric::LearntMetric;
 pub use training::maker::Maker;
+pub use training::network_training::NetworkTraining;
 pub use training::partial::PartialTraining;
 pub use training::preset::Preset;
 pub use training::recipe::{Encoding, Training};
-pub use training::regressor::{LearntMetric, NetworkTraining, RegressorConfig};
+pub use training::regressor::RegressorConfig;
 pub use training::shard::Shard;
 pub use training::trainer::{Cost, Trainer};
 pub use window::{Framing, PicturedHand, Window, WindowFinder};

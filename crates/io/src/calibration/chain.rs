@@ -2,7 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::calibration::fields::{Field, Fields};
+use crate::calibration::field::Field;
+use crate::calibration::fields::Fields;
 use crate::calibration::record::{Pose, Record};
 use crate::calibration::value::{Map, Value, get};
 use crate::error::{Error, Result};

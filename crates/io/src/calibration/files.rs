@@ -4,7 +4,8 @@ use phalanx_camera::Rig;
 
 use crate::calibration::colmap;
 use crate::calibration::document::Document;
-use crate::calibration::fields::{Field, Fields};
+use crate::calibration::field::Field;
+use crate::calibration::fields::Fields;
 use crate::calibration::layout;
 use crate::calibration::record::Record;
 use crate::calibration::syntax::Syntax;

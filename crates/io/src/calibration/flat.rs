@@ -1,6 +1,6 @@
 //! Files in which each key names a field and a camera: `K_01`, `dist_01`, `M1`, `D1`, `left_K`.
 
-use crate::calibration::fields::Field;
+use crate::calibration::field::Field;
 use crate::calibration::record::MOST_CAMERAS;
 use crate::calibration::value::{Map, Sections, Value, get};
 

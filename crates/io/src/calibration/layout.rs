@@ -1,7 +1,8 @@
 //! Where a file of named values has its cameras.
 
 use crate::calibration::document::Document;
-use crate::calibration::fields::{Field, Fields, is_camera};
+use crate::calibration::field::Field;
+use crate::calibration::fields::{Fields, is_camera};
 use crate::calibration::unit::Unit;
 use crate::calibration::value::{Map, Sections, Value, get, repeated_name};
 use crate::calibration::{chain, flat};

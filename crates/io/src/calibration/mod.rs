@@ -22,6 +22,7 @@ mod chain;
 mod colmap;
 mod distance;
 mod document;
+mod field;
 mod fields;
 mod files;
 mod flat;

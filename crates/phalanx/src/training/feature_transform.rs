@@ -1,7 +1,7 @@
 //! From descriptors to what a regressor reads.
 
 use faer::Mat;
-use phalanx_rvm::{BlockPca, LearnedMetric};
+use phalanx_rvm::{BlockPca, FeatureBlock, LearnedMetric};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
@@ -35,4 +35,9 @@ impl FeatureTransform {
             Self::Metric { metric, .. } => metric.projection.outputs(),
         }
     }
+}
+
+/// Parts of a descriptor of these lengths, with at most so many components each.
+pub(crate) fn blocks(parts: &[usize], components: usize) -> Vec<FeatureBlock> {
+    parts.iter().map(|&inputs| FeatureBlock { inputs, components }).collect()
 }

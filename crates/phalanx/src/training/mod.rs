@@ -2,8 +2,11 @@
 
 pub(crate) mod cameras;
 pub(crate) mod feature_transform;
+pub(crate) mod learnt_metric;
 pub(crate) mod maker;
+pub(crate) mod network_training;
 pub(crate) mod partial;
+mod partial_file;
 pub(crate) mod plan;
 pub(crate) mod preset;
 pub(crate) mod recipe;

@@ -9,8 +9,10 @@ use phalanx_rvm::{
 
 use crate::features::describer::OrientationRule;
 use crate::training::cameras::Cameras;
+use crate::training::learnt_metric::LearntMetric;
+use crate::training::network_training::NetworkTraining;
 use crate::training::recipe::{Encoding, Training};
-use crate::training::regressor::{LearntMetric, NetworkTraining, RegressorConfig};
+use crate::training::regressor::RegressorConfig;
 use crate::window::Framing;
 
 /// How much time an estimator is worth.

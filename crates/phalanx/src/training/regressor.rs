@@ -1,22 +1,23 @@
 //! The regressors that an estimator can be learnt with.
 
 use faer::{Mat, MatRef};
-use phalanx_hand::{Digit, Dof};
+use phalanx_hand::Dof;
 use phalanx_rvm::{
-    AgarwalTriggs, BasisSpec, BlockPca, ExpectedGradientOuterProduct, FeatureBlock, Fit,
-    IncompleteFit, Kernel, KernelRidge, LearnedMetric, MissingInputs, MlpTrainer, MultiOutputRvm,
-    NystromRidge, OrthogonalLeastSquares, PcaMlp, PilotSample, RelevanceVectorMachine, Ridge,
+    AgarwalTriggs, BasisSpec, BlockPca, Fit, Kernel, KernelRidge, MissingInputs, MultiOutputRvm,
+    NystromRidge, OrthogonalLeastSquares, PilotSample, RelevanceVectorMachine, Ridge,
     SufficientStatistics, TwoStageSelection, random_subset,
 };
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::estimator::regression::FittedRegressor;
-use crate::estimator::subset_regression::{SubsetRegression, SubsetRegressors};
+use crate::estimator::subset_regression::SubsetRegression;
 use crate::features::descriptor::Descriptor;
 use crate::progress::Progress;
 use crate::synthesis::scene::SUBSET_SEED;
-use crate::training::feature_transform::FeatureTransform;
+use crate::training::feature_transform::{FeatureTransform, blocks};
+use crate::training::learnt_metric::LearntMetric;
+use crate::training::network_training::NetworkTraining;
 
 /// Samples that are added to sums at a time.
 const BATCH: usize = 4096;
@@ -48,41 +49,6 @@ pub enum RegressorConfig {
     Network(NetworkTraining),
 }
 
-/// How distances are learnt and regressed with. In a prior without couplings between the digits, what
-/// one digit does says nothing of another; a distance of its own for each needs not see every
-/// combination.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct LearntMetric {
-    /// Scenes, chosen at random, that principal components and distances are learnt from.
-    pub pilot: usize,
-    /// Principal components of each view's code, and of what is beside it, at most.
-    pub components: usize,
-    /// How distances are learnt.
-    pub metric: ExpectedGradientOuterProduct,
-    /// Gaussians of each digit's regression, at most; some of the pilot's, chosen at random.
-    pub centres: usize,
-    /// The regression.
-    pub regression: NystromRidge,
-}
-
-/// How a network is trained. What it reads of every scene is kept until then: some kilobytes each.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct NetworkTraining {
-    /// Scenes, chosen at random, that principal components are learnt from.
-    pub pilot: usize,
-    /// Principal components of each view's code, and of what is beside it, at most.
-    pub components: usize,
-    /// The network.
-    pub perceptron: MlpTrainer,
-}
-
-impl NetworkTraining {
-    /// Passes over the samples by which the network goes on to learn what to do without some of the views.
-    fn further_epochs(&self) -> usize {
-        self.perceptron.epochs.div_ceil(2)
-    }
-}
-
 /// What training keeps of its scenes for a regressor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kept {
@@ -92,44 +58,6 @@ pub(crate) enum Kept {
     Readings,
     /// The descriptor of each, which bounds their number.
     Descriptors { regressor: &'static str, most: usize },
-}
-
-impl LearntMetric {
-    /// Learns the distances from a pilot's descriptors, K × n, made of parts of these lengths, and
-    /// poses, 28 × n; beside them the parts' principal components, which they are learnt between.
-    pub(crate) fn learn(
-        &self,
-        x: MatRef<'_, f64>,
-        y: MatRef<'_, f64>,
-        parts: &[usize],
-    ) -> Result<(LearnedMetric, BlockPca)> {
-        Ok(self.metric.fit_with_components(x, y, &blocks(parts, self.components), &groups())?)
-    }
-
-    /// The same for so many of a rig's cameras. They leave more open, so that fewer Gaussians tell as much: a
-    /// quarter of them through one of three and half through two, which errs as all of them do to within 4 %
-    /// and 6 %.
-    pub(crate) fn of_fewer_views(&self, views: usize, cameras: usize) -> Self {
-        let fewer = |centres: usize| (centres * views).div_ceil(cameras + 1);
-        let metric = ExpectedGradientOuterProduct {
-            centres: fewer(self.metric.centres),
-            gradients: fewer(self.metric.gradients),
-            ..self.metric.clone()
-        };
-        Self { centres: fewer(self.centres), metric, ..self.clone() }
-    }
-}
-
-/// Parts of these lengths, with at most so many components each.
-fn blocks(parts: &[usize], components: usize) -> Vec<FeatureBlock> {
-    parts.iter().map(|&inputs| FeatureBlock { inputs, components }).collect()
-}
-
-/// The numbers of the pose that are regressed together: each digit's, and all others.
-fn groups() -> Vec<Vec<usize>> {
-    let digits = Digit::ALL.map(|digit| digit.dofs().map(Dof::index).to_vec());
-    let others = Dof::ALL.into_iter().filter(|dof| !dof.is_internal()).map(Dof::index).collect();
-    digits.into_iter().chain([others]).collect()
 }
 
 impl RegressorConfig {
@@ -238,20 +166,7 @@ impl RegressorConfig {
         else {
             return Err(Error::Mismatch { part: "principal components", found: 0, expected: 1 });
         };
-        let NetworkTraining { perceptron, .. } = fitter;
-        let whole = |network| PcaMlp::from_parts(components.clone(), network);
-        let Some(missing) = missing else {
-            progress.begin("train the network", perceptron.epochs);
-            let trained = perceptron.fit_single(x, y, &mut |_| progress.step())?;
-            return Ok((whole(trained.model)?.into(), None));
-        };
-        let further = fitter.further_epochs();
-        progress.begin("train the network", perceptron.epochs + further);
-        let (trained, IncompleteFit { model: network, deviations }) =
-            perceptron.fit_incomplete(x, y, missing, further, &mut |_| progress.step())?;
-        let regressors = SubsetRegressors::Shared { network, deviations };
-        let subsets = SubsetRegression::new(components.clone(), regressors);
-        Ok((whole(trained.model)?.into(), Some(subsets)))
+        fitter.fit(components, (x, y), missing, progress)
     }
 
     /// Fits targets `y`, m × I, to descriptors `x`, K × I; samples are columns. Of regressors with
