@@ -48,8 +48,10 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let output = Output::new(&arguments.out, &[&arguments.model])?;
     let estimator = input::model(&arguments.model)?;
+    let folders = estimator.rig().cameras.iter().map(|camera| arguments.frames.join(&camera.name));
+    let files = [&arguments.model].into_iter().chain(arguments.segment.path());
+    let output = Output::new(&arguments.out, &folders.chain(files.cloned()).collect::<Vec<_>>())?;
     let names = frame_names(&arguments.frames, &estimator)?;
     let nuisance = NuisanceParameters::default();
     let refinement = PoseFitSettings { nuisance: Some(nuisance), ..PoseFitSettings::default() };

@@ -42,14 +42,16 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let (out, inputs) = (&arguments.out, [&arguments.take]);
     let output = Output::new(out, &inputs)?;
-    let take = take_file::read(&arguments.take)?;
     let kind = take_file::extension(out);
+    let beside =
+        (kind == "mot").then(|| Output::new(&deviations_beside(out), &inputs)).transpose()?;
+    let take = take_file::read(&arguments.take)?;
     let bytes = converted(&take, arguments, &kind).with_context(|| out.display().to_string())?;
     output.write(&bytes)?;
-    if kind == "mot" {
+    if let Some(beside) = beside {
         let unit = arguments.unit.unwrap_or(LengthUnit::Millimetre);
         let deviations = deviation_file(&take, arguments.names, unit)?;
-        Output::new(&deviations_beside(out), &inputs)?.write(deviations.as_bytes())?;
+        beside.write(deviations.as_bytes())?;
     }
     let told = untold(&take, arguments, &kind);
     for text in &told {

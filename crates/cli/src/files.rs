@@ -32,7 +32,8 @@ enum Place {
 }
 
 impl Output {
-    /// The place of this name, for a result that is made of some inputs. Nothing is written yet.
+    /// The place of this name, for a result that is made of some inputs, files or folders of pictures. Nothing
+    /// is written yet.
     ///
     /// # Errors
     /// A folder, a file that is read-only or one of the inputs, a place in a folder that is not there,
@@ -41,7 +42,7 @@ impl Output {
         let place = if path == Path::new("-") { Place::StandardOutput } else { place(path)? };
         let output = Self { path: path.to_owned(), place };
         if let Place::File(target) = &output.place
-            && let Some(input) = inputs.iter().find(|input| is_same_file(target, input.as_ref()))
+            && let Some(input) = inputs.iter().find(|input| is_input(target, input.as_ref()))
         {
             bail!(
                 "{}: this is the input {}; choose another name for the output",
@@ -50,6 +51,24 @@ impl Output {
             );
         }
         Ok(output)
+    }
+
+    /// Refuses the place of another result of the same run.
+    ///
+    /// # Errors
+    /// The same place.
+    pub fn check_apart(&self, other: &Self) -> Result<()> {
+        let is_same = match (&self.place, &other.place) {
+            (Place::StandardOutput, Place::StandardOutput) => true,
+            (Place::File(one), Place::File(other)) => {
+                is_same_file(one, other)
+                    || one.file_name() == other.file_name()
+                        && is_same_file(folder_of(one), folder_of(other))
+            }
+            _ => false,
+        };
+        ensure!(!is_same, "{}: another result goes there; choose two names", self.path.display());
+        Ok(())
     }
 
     /// Whether it is standard output, where nothing else may be printed then.
@@ -191,6 +210,12 @@ fn folder_of(path: &Path) -> &Path {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     }
+}
+
+/// Whether a file is an input, or a picture in a folder that is one.
+fn is_input(target: &Path, input: &Path) -> bool {
+    let is_picture = || target.is_file() && ImageFormat::from_path(target).is_ok();
+    is_same_file(target, input) || is_picture() && is_same_file(folder_of(target), input)
 }
 
 /// Writes a file so that it is complete afterwards, or as it was before.

@@ -47,6 +47,11 @@ impl SegmentArguments {
         Ok(Pictures::Photographs(Segmentation::Shared(shared)))
     }
 
+    /// The file that says how, if it is one that does.
+    pub(crate) fn path(&self) -> Option<&PathBuf> {
+        self.segment.as_ref()
+    }
+
     fn file(&self) -> Result<Segmentation> {
         let path = self.segment.as_deref().unwrap_or(Path::new(""));
         let name = || format!("{} (--segment)", path.display());

@@ -41,7 +41,8 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { empty, hand, masks, out, form } = arguments;
-    let output = Output::new(out, &[] as &[PathBuf])?;
+    let folders = [empty, hand, masks].into_iter().flatten().map(|folder| folders_in(folder));
+    let output = Output::new(out, &folders.collect::<Result<Vec<_>>>()?.concat())?;
     let (segmentation, said, text) = match (empty, hand, masks) {
         (Some(empty), None, None) => backgrounds(empty)?,
         (Some(empty), Some(hand), None) => {
@@ -132,18 +133,25 @@ fn share_of_skin(model: &SkinModel, pairs: &[(RgbImage, Mask)], of_hand: bool) -
 
 /// The cameras' folders of pictures, by name.
 fn cameras(folder: &Path) -> Result<Vec<(String, PictureFolder)>> {
-    let name = || folder.display().to_string();
-    let mut cameras = Vec::new();
-    for entry in std::fs::read_dir(folder).with_context(name)? {
-        let path = entry.with_context(name)?.path();
-        if path.is_dir() {
-            let camera = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            cameras.push((camera, PictureFolder::open(&path)?));
-        }
-    }
+    let opened = folders_in(folder)?.into_iter().map(|path| {
+        let camera = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok((camera, PictureFolder::open(&path)?))
+    });
+    let cameras: Vec<_> = opened.collect::<Result<_>>()?;
     ensure!(!cameras.is_empty(), "{}: it has no folder for a camera", folder.display());
-    cameras.sort_by(|a, b| a.0.cmp(&b.0));
     Ok(cameras)
+}
+
+/// The folders in a folder, by name.
+fn folders_in(folder: &Path) -> Result<Vec<PathBuf>> {
+    let name = || folder.display().to_string();
+    let mut folders = Vec::new();
+    for entry in std::fs::read_dir(folder).with_context(name)? {
+        folders.push(entry.with_context(name)?.path());
+    }
+    folders.retain(|path| path.is_dir());
+    folders.sort();
+    Ok(folders)
 }
 
 /// A folder's pictures with their names, of many some.

@@ -70,11 +70,11 @@ struct Answer {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let overlay_to = overlay_output(arguments)?;
     let estimator = input::model(&arguments.model)?;
     let hand = arguments.hand.as_deref().map(input::hand).transpose()?;
     let hand = hand.unwrap_or_else(|| estimator.hand().clone());
     let stills = stills(&estimator.rig().cameras, &arguments.images)?;
+    let overlay_to = overlay_output(arguments, &stills)?;
     let setup = Setup { arguments, pictures: arguments.segment.pictures()?, estimator, hand };
     match (&stills[..], overlay_to) {
         ([], _) => bail!("there is no picture in the folders"),
@@ -187,9 +187,11 @@ impl Setup<'_> {
 }
 
 /// Where the overlay goes, if one is asked for.
-fn overlay_output(arguments: &Arguments) -> Result<Option<Output>> {
+fn overlay_output(arguments: &Arguments, stills: &[Still]) -> Result<Option<Output>> {
     let Some(path) = &arguments.overlay else { return Ok(None) };
-    let inputs = arguments.images.iter().chain(&arguments.hand).chain([&arguments.model]);
+    let pictures = stills.iter().flat_map(|still| still.paths.iter().flatten());
+    let files = arguments.hand.iter().chain([&arguments.model]).chain(arguments.segment.path());
+    let inputs = pictures.chain(files);
     let output = Output::new(path, &inputs.collect::<Vec<_>>())?;
     if output.is_file() && !is_png(path) {
         bail!("{}: the overlay is written as PNG; name it so", path.display());

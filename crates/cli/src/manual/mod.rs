@@ -4,8 +4,9 @@ mod markdown;
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use clap::Args;
+use clap_mangen::Man;
 use phalanx_cli::files::Output;
 
 #[derive(Args)]
@@ -22,11 +23,21 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, program: clap::Command) -> Result<()> {
     let out = arguments.out.as_deref().unwrap_or(Path::new("-"));
     let mut program = program.disable_help_subcommand(true);
+    // Gives each subcommand its whole name.
+    program.build();
     if arguments.markdown {
-        // Gives each subcommand its whole name.
-        program.build();
         return Output::new(out, &[] as &[PathBuf])?.write(markdown::page(&program).as_bytes());
     }
     ensure!(out.is_dir(), "{}: there is no such folder", out.display());
-    clap_mangen::generate_to(program, out).with_context(|| out.display().to_string())
+    write_pages(&program, out)
+}
+
+/// Writes the pages of a command and of all its subcommands, each whole or not at all.
+fn write_pages(command: &clap::Command, folder: &Path) -> Result<()> {
+    let page = Man::new(command.clone());
+    let mut bytes = Vec::new();
+    page.render(&mut bytes)?;
+    Output::new(&folder.join(page.get_filename()), &[] as &[&Path])?.write(&bytes)?;
+    let mut shown = command.get_subcommands().filter(|subcommand| !subcommand.is_hide_set());
+    shown.try_for_each(|subcommand| write_pages(subcommand, folder))
 }

@@ -38,7 +38,8 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let rig = check::read(&arguments.rig)?;
     let source = Source::new(&rig, &arguments.recording, arguments.side.into())?;
-    let inputs: Vec<&PathBuf> = source.inputs().chain([&arguments.rig]).collect();
+    let segment = arguments.recording.segment.path();
+    let inputs: Vec<&PathBuf> = source.inputs().chain([&arguments.rig]).chain(segment).collect();
     let out = Output::new(&arguments.out, &inputs)?;
     let mut failures = Vec::new();
     let frames = source.reader()?.read_some(MOMENTS, &mut failures);

@@ -33,11 +33,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let kind = arguments.kind()?;
     let rig = check::read(&arguments.rig)?;
     let source = Source::new(&rig, &arguments.recording, arguments.side.into())?;
-    let given = [Some(&arguments.rig), arguments.hand.as_ref()];
+    let given = [Some(&arguments.rig), arguments.hand.as_ref(), arguments.recording.segment.path()];
     let inputs: Vec<&PathBuf> = source.inputs().chain(given.into_iter().flatten()).collect();
     let out = Output::new(&arguments.out, &inputs)?;
     let hand_out = arguments.save_hand.as_ref().map(|path| Output::new(path, &inputs));
     let hand_out = hand_out.transpose()?;
+    hand_out.iter().try_for_each(|hand| hand.check_apart(&out))?;
     let save = |hand: &HandShape| {
         hand_out.as_ref().map_or(Ok(()), |out| out.write(hand.to_toml().as_bytes()))
     };

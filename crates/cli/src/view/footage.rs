@@ -20,6 +20,8 @@ pub(super) struct Filmed {
     /// The camera, its image as large as pictures are shown.
     pub(super) camera: Camera,
     recording: Box<dyn Recording>,
+    /// Where it is.
+    pub(super) path: PathBuf,
     /// The number of the camera's frame at each moment.
     frames: Vec<Option<usize>>,
 }
@@ -59,10 +61,10 @@ pub(super) fn open_all(
     let stamps: Vec<&[Stamp]> = stamps.iter().map(AsRef::as_ref).collect();
     let moments = Timeline::new(&stamps).moments;
     check(take, &moments)?;
-    let filmed = recordings.into_iter().zip(&cameras).enumerate();
-    let filmed = filmed.map(|(view, (recording, camera))| {
+    let filmed = recordings.into_iter().zip(paths).zip(&cameras).enumerate();
+    let filmed = filmed.map(|(view, ((recording, path), camera))| {
         let frames = moments.iter().map(|moment| moment.frames[view]).collect();
-        Filmed { camera: shown(camera), recording, frames }
+        Filmed { camera: shown(camera), recording, path, frames }
     });
     Ok(filmed.collect())
 }

@@ -56,7 +56,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         "{}: the name must end with .html for a page, .png for a sheet, .mp4 or .mkv for a video",
         arguments.out.display()
     );
-    let output = Output::new(&arguments.out, &[&arguments.take])?;
     let take = take_file::read(&arguments.take)?;
     let timestamps = arguments.timestamps.as_deref();
     let mut filmed = match (&*arguments.frames, &arguments.rig) {
@@ -66,6 +65,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         _ if kind == "html" => Vec::new(),
         _ => bail!("{}: give --frames and --rig", arguments.out.display()),
     };
+    let recordings = filmed.iter().map(|filmed| &filmed.path);
+    let files = [&arguments.take].into_iter().chain(&arguments.rig).chain(&arguments.timestamps);
+    let output = Output::new(&arguments.out, &recordings.chain(files).collect::<Vec<_>>())?;
     let every = arguments.every.map(NonZeroUsize::get);
     match kind.as_str() {
         "html" => {

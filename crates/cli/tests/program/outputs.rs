@@ -6,7 +6,8 @@ use std::process::Command;
 use tempfile::TempDir;
 
 use crate::calibrations::CALIBRATION;
-use crate::desk::{Desk, Outcome, run};
+use crate::desk::{CAMERAS, Desk, Outcome, run};
+use crate::tracks::recorded;
 
 /// A folder with a calibration to import.
 fn folder() -> TempDir {
@@ -73,6 +74,39 @@ fn an_input_is_no_output() {
     let outcome = import(folder.path(), "c.json");
     assert_eq!(outcome.code, Some(2), "{}", outcome.err);
     assert_eq!(std::fs::read_to_string(folder.path().join("c.json")).unwrap(), CALIBRATION);
+}
+
+/// Most commands are given the pictures by their folder, or by the names of cameras.
+#[test]
+fn a_picture_that_is_read_is_no_output() {
+    let desk = recorded(4);
+    let [picture, other] = CAMERAS.map(|camera| format!("take/{camera}/0001.png"));
+    let before = desk.read(&picture);
+    let named = [format!("{}={picture}", CAMERAS[0]), format!("{}={other}", CAMERAS[1])];
+    for arguments in [
+        &["calibrate-hand", "--model", "model", "--frames", "take", "--mask", "--out"][..],
+        &["skin", "--empty", "take", "--out"],
+        &["rig", "volume", "rig.toml", "take", "--mask", "--out"],
+        &["track", "--rig", "rig.toml", "--mask", "take", "--out", "a.csv", "--save-hand"],
+        &["estimate", "--model", "model", "--mask", &named[0], &named[1], "--overlay"],
+    ] {
+        let outcome = run(desk.folder(), arguments.iter().chain(&[&*picture]));
+        assert_eq!(outcome.code, Some(2), "{arguments:?}");
+        assert!(outcome.err.contains(&format!("{picture}: this is the input")), "{outcome:?}");
+    }
+    assert_eq!(desk.read(&picture), before);
+}
+
+#[test]
+fn two_results_have_two_places() {
+    let desk = recorded(2);
+    for (out, hand) in [("a.csv", "./a.csv"), ("-", "-")] {
+        let track = ["track", "--rig", "rig.toml", "--mask", "take", "--out", out, "--save-hand"];
+        let outcome = run(desk.folder(), track.iter().chain(&[hand]));
+        assert_eq!((outcome.code, outcome.out.as_str()), (Some(2), ""));
+        assert!(outcome.err.contains("another result goes there"), "{}", outcome.err);
+        assert!(!desk.path("a.csv").exists());
+    }
 }
 
 #[test]

@@ -73,6 +73,10 @@ fn a_take_is_written_as_every_format_and_read_again() {
     assert_eq!(read_npz(&folder.file("b.npz")).unwrap().frames.len(), 30);
     folder.printed(&["convert", "take.csv", "--out", "m.trc", "--unit", "m", "--axes", "xz-y"]);
     assert!(String::from_utf8(folder.file("m.trc")).unwrap().contains("\tm\t"));
+    std::fs::create_dir(folder.0.path().join("b_std.sto")).unwrap();
+    let half = folder.refusal(&["convert", "take.csv", "--out", "b.mot"]);
+    assert!(half.contains("b_std.sto: this is a folder"), "{half}");
+    assert!(!folder.0.path().join("b.mot").exists(), "nothing without its deviations");
     let guessed = folder.run(&["convert", "take.csv", "--out", "o.mot", "--names", "opensim"]);
     assert!(String::from_utf8(guessed.stderr).unwrap().contains("not yet confirmed"));
 }
@@ -109,6 +113,9 @@ fn pictures_are_shown_with_joints_and_outline_of_the_hand() {
     let outlines: Vec<&str> = outlines.split("\",\"").collect();
     assert!(outlines.len() == 2 && outlines.iter().all(|outline| outline.len() > 500));
     assert_eq!(page.matches("data:image/jpeg").count(), 2);
+
+    let over_one = folder.refusal(&[&arguments[..], &["frames/top/1.png"]].concat());
+    assert!(over_one.contains("this is the input frames/top"), "{over_one}");
 
     // The same on a sheet, and as a video: two pictures of black, with an outline.
     let filmed = |others: &[&str]| {
