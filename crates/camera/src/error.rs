@@ -12,7 +12,7 @@ pub enum Error {
     /// The text is not TOML, or has unknown, missing or ill-typed keys.
     #[error("rig file: {message}")]
     Toml {
-        /// The parser's message, with the line at fault.
+        /// The line at fault, and the parser's message.
         message: String,
     },
     /// A number of distortion coefficients that no lens model has.

@@ -77,8 +77,7 @@ impl Rig {
     /// `distortion` (OpenCV's 4, 5, 8, 12 or 14 coefficients, or a fisheye's 4), and either `position_mm`, `look_at_mm` and `up`, or `rotation` (three rows) and
     /// `translation_mm`. Pixel centres are at integer + 0.5.
     pub fn from_toml(text: &str) -> Result<Self> {
-        let file: RigFile =
-            toml::from_str(text).map_err(|e| Error::Toml { message: e.to_string() })?;
+        let file: RigFile = toml::from_str(text).map_err(|error| toml_error(text, &error))?;
         let VolumeFile { center_mm: center, size_mm: size, forearm, up } = file.volume;
         let cameras = file.camera.into_iter().map(CameraFile::into_camera);
         let rig = Self {
@@ -100,6 +99,13 @@ impl Rig {
         let body = toml::to_string(&file).map_err(|e| Error::Toml { message: e.to_string() })?;
         Ok(HEADER.to_owned() + &body)
     }
+}
+
+/// The parser's words and the line, without the line's text, which may be long.
+fn toml_error(text: &str, error: &toml::de::Error) -> Error {
+    let before = error.span().and_then(|span| text.get(..span.start)).unwrap_or_default();
+    let line = 1 + before.matches('\n').count();
+    Error::Toml { message: format!("line {line}: {}", error.message()) }
 }
 
 impl CameraFile {

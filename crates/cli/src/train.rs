@@ -15,6 +15,7 @@ use crate::forecast::Forecast;
 use crate::form::Form;
 use crate::input;
 use crate::progress::Bar;
+use crate::rig::check;
 use phalanx_cli::files::Output;
 use phalanx_cli::parts;
 
@@ -221,10 +222,7 @@ pub(crate) fn merge(arguments: &MergeArguments) -> Result<()> {
 fn rig(arguments: &Arguments) -> Result<Rig> {
     let rig = match &arguments.rig {
         None => Rig::from_toml(DESK)?,
-        Some(path) => {
-            let name = || path.display().to_string();
-            Rig::from_toml(&std::fs::read_to_string(path).with_context(name)?).with_context(name)?
-        }
+        Some(path) => check::read(path)?,
     };
     if arguments.cameras.is_empty() {
         return Ok(rig);

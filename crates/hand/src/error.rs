@@ -38,8 +38,13 @@ pub enum Error {
         what: &'static str,
     },
     /// A hand file that is not well-formed TOML or lacks a field.
-    #[error("hand: {0}")]
-    Toml(#[from] toml::de::Error),
+    #[error("hand: line {line}: {message}")]
+    Toml {
+        /// The line at fault, from 1.
+        line: usize,
+        /// The parser's message.
+        message: String,
+    },
     /// A number of a hand shape outside what a hand can have.
     #[error("hand: {field} = {value} is outside {low}..{high}")]
     BadShape {

@@ -167,7 +167,7 @@ impl HandShape {
     /// # Ok::<(), phalanx_hand::Error>(())
     /// ```
     pub fn from_toml(text: &str) -> Result<Self> {
-        let shape: Self = toml::from_str(text)?;
+        let shape: Self = toml::from_str(text).map_err(|error| toml_error(text, &error))?;
         shape.validate()?;
         Ok(shape)
     }
@@ -231,6 +231,13 @@ impl HandShape {
         each("forearm.half_widths_mm", &forearm.half_widths_mm, 0.1)?;
         within("forearm.flatness", forearm.flatness, 0.1, 1.0)
     }
+}
+
+/// The parser's words and the line, without the line's text, which may be long.
+fn toml_error(text: &str, error: &toml::de::Error) -> Error {
+    let before = error.span().and_then(|span| text.get(..span.start)).unwrap_or_default();
+    let line = 1 + before.matches('\n').count();
+    Error::Toml { line, message: error.message().to_owned() }
 }
 
 /// No part of a hand but the forearm is longer.

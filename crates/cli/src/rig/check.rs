@@ -57,8 +57,13 @@ struct Pair {
 /// Reads a rig file, which errors name.
 pub(crate) fn read(path: &Path) -> Result<Rig> {
     let named = || path.display().to_string();
-    let text = std::fs::read_to_string(path).with_context(named)?;
-    Rig::from_toml(&text).with_context(named)
+    let bytes = std::fs::read(path).with_context(named)?;
+    let advice = || format!("{}: no rig; `phalanx rig import` makes one of a calibration", named());
+    let text = std::str::from_utf8(&bytes).with_context(advice)?;
+    Rig::from_toml(text).map_err(|error| {
+        let is_other = matches!(error, phalanx_camera::Error::Toml { .. });
+        anyhow::Error::from(error).context(if is_other { advice() } else { named() })
+    })
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {

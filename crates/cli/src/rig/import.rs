@@ -11,6 +11,7 @@ use serde_json::json;
 
 use crate::form::Form;
 use crate::rig::calibration;
+use crate::rig::unit;
 use crate::rig::volume::{Vector, VolumeArguments};
 
 #[derive(Args)]
@@ -54,10 +55,18 @@ fn size(text: &str) -> Result<(u32, u32)> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let Arguments { files, unit, square_mm, size, volume, volume_size, out, form } = arguments;
-    let output = Output::new(out, files)?;
+    let Arguments { files, unit, square_mm, size, .. } = arguments;
     let missing = Missing { unit: unit.or(*square_mm), size: *size };
-    let calibration = calibration::read(files, &missing)?;
+    import(arguments, &missing).map_err(|error| match unit::advice(&error, files, &missing) {
+        Some(advice) => error.context(advice),
+        None => error,
+    })
+}
+
+fn import(arguments: &Arguments, missing: &Missing) -> Result<()> {
+    let Arguments { files, volume, volume_size, out, form, .. } = arguments;
+    let output = Output::new(out, files)?;
+    let calibration = calibration::read(files, missing)?;
     for note in &calibration.notes {
         eprintln!("note: {note}");
     }

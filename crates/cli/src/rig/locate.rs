@@ -12,6 +12,7 @@ use serde_json::json;
 
 use super::check;
 use crate::form::Form;
+use crate::progress::Bar;
 use crate::recording::source::{RecordingArguments, Source};
 use crate::side::SideName;
 
@@ -48,7 +49,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     }
     ensure!(failures.len() < frames.len(), "too few pictures can be read");
     let hand = HandShape { side: arguments.side.into(), ..HandShape::adult() };
-    let VolumeEstimate { volume, turns } = estimate_volume(&source.cameras, &frames, &hand)?;
+    let VolumeEstimate { volume, turns } =
+        estimate_volume(&source.cameras, &frames, &hand, &Bar::new())?;
     let rig = Rig { volume, ..rig };
     out.write(rig.to_toml()?.as_bytes())?;
     let turns = turns.map(|turn| turn.map(f64::to_degrees));
@@ -58,11 +60,27 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         "turns_deg": { "x": turns[0], "y": turns[1], "forearm": turns[2] },
     });
     arguments.form.say(&out, &said, || {
-        let [x, y, z] = turns;
+        let [x, y, z] = turns.map(|turn| turn.map(whole));
+        let center = center.to_array().map(whole);
         format!(
-            "the wrist works around {:.0}, {:.0}, {:.0} mm; the hand turns by {:.0} to {:.0}° about X, {:.0} \
-             to {:.0}° about Y and {:.0} to {:.0}° about the forearm",
-            center.x, center.y, center.z, x[0], x[1], y[0], y[1], z[0], z[1]
+            "the wrist works around {}, {}, {} mm; the hand turns by {} to {}° about X, {} to {}° about Y and {} to \
+             {}° about the forearm",
+            center[0], center[1], center[2], x[0], x[1], y[0], y[1], z[0], z[1]
         )
     })
+}
+
+/// A whole number, without the sign of a zero.
+fn whole(value: f64) -> f64 {
+    value.round() + 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::whole;
+
+    #[test]
+    fn a_zero_has_no_sign() {
+        assert_eq!([-0.4, 0.4, -0.6].map(whole).map(|value| value.to_string()), ["0", "0", "-1"]);
+    }
 }

@@ -6,6 +6,7 @@ mod export;
 mod import;
 mod locate;
 mod simulation;
+mod unit;
 pub(crate) mod volume;
 
 use anyhow::Result;

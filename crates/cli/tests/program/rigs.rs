@@ -148,3 +148,44 @@ fn what_cannot_be_is_refused_and_nothing_is_written() {
     assert_eq!((outcome.code, folder.read("rig.toml")), (Some(2), None));
     assert!(outcome.err.contains("a hand of 190 mm would be 9500 px long"), "{}", outcome.err);
 }
+
+#[test]
+fn a_wrong_unit_is_told_from_a_bad_lens() {
+    let folder = Folder::new();
+    // Turns back 30° off its axis, where the hand is only if the cameras are near.
+    let folding =
+        CALISCOPE.replace("[-0.1, 0.02, 0.001, -0.002, 0.0]", "[-0.014, 1.42, 0.0, 0.0, -6.39]");
+    std::fs::write(folder.0.path().join("folding.toml"), folding).unwrap();
+    for (arguments, advice) in [
+        ("folding.toml --unit 150", Some("a length of 1 is hardly 150 mm: the cameras see")),
+        ("folding.toml --unit mm", Some("if a length of 1 is 220 to 3800 mm, such as --unit m: ")),
+        ("folding.toml", Some("phalanx: the cameras see a hand well if a length of 1 is 220")),
+        // The unit is right, and the hand works too near.
+        ("folding.toml --unit m --volume-size 900,900,900", None),
+    ] {
+        let outcome = folder.run(&format!("import {arguments} --out rig.toml"));
+        assert_eq!((outcome.code, folder.read("rig.toml")), (Some(2), None), "{arguments}");
+        let lens = "phalanx: folding.toml: camera `cam_1`: its distortion folds over";
+        let said = advice.unwrap_or(lens);
+        assert!(outcome.err.contains(said), "no '{said}' in: {}", outcome.err);
+    }
+    assert_eq!(folder.run("import folding.toml --unit m --out rig.toml").code, Some(0));
+}
+
+#[test]
+fn what_is_no_rig_is_named_without_its_text() {
+    let folder = Folder::new();
+    let row = "0.25,".repeat(300);
+    std::fs::write(folder.0.path().join("take.csv"), format!("frame,time\n{row}\n")).unwrap();
+    std::fs::write(folder.0.path().join("picture.png"), [0x89, b'P', 0xff, 0xfe]).unwrap();
+    for name in ["take.csv", "picture.png", "camera_array.toml"] {
+        let outcome = folder.run(&format!("check {name}"));
+        let said = format!("{name}: no rig; `phalanx rig import` makes one of a calibration: ");
+        assert!(outcome.code == Some(2) && outcome.err.contains(&said), "{}", outcome.err);
+        assert!(outcome.err.lines().count() == 1 && outcome.err.len() < 300, "{}", outcome.err);
+    }
+    let arguments = ["train", "--preset", "fast", "--hand", "take.csv", "--out", "model"];
+    let outcome = run(folder.0.path(), arguments);
+    assert!(outcome.err.contains("take.csv: hand: line 1: "), "{}", outcome.err);
+    assert_eq!(outcome.err.lines().count(), 1, "{}", outcome.err);
+}

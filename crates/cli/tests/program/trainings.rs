@@ -72,6 +72,24 @@ fn parts_are_merged_to_the_model_of_a_single_run() {
     assert!(outcome.err.contains("part: two parts both hold samples 0 to 149"), "{}", outcome.err);
 }
 
+#[test]
+fn what_was_trained_is_said_as_json() {
+    let folder = TempDir::new().unwrap();
+    let said = |arguments: &[&str]| -> Value {
+        let outcome = train(&folder, &[arguments, &["--json"]].concat());
+        assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+        serde_json::from_str(&outcome.out).unwrap()
+    };
+    let bytes = |name: &str| std::fs::metadata(folder.path().join(name)).unwrap().len();
+    let model = said(&["--out", "hand.phalanx"]);
+    let expected = serde_json::json!({
+        "model": "hand.phalanx", "cameras": ["top"], "bytes": bytes("hand.phalanx"),
+    });
+    assert_eq!(model, expected);
+    let part = said(&["--shard", "1/2", "--out", "part"]);
+    assert_eq!(part, serde_json::json!({ "part": "part", "bytes": bytes("part"), "lost": 0 }));
+}
+
 /// Killed with what is done kept beside the output, and started again.
 #[test]
 fn a_killed_training_goes_on_to_the_same_bytes() {

@@ -2,24 +2,26 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 use phalanx_camera::{Camera, Volume};
-use phalanx_hand::{Dof, HandShape};
+use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::PoseFitSettings;
 use rayon::prelude::*;
 
 use super::frame_fit::{Found, FrameFitter};
 use super::misfit::DISAGREEMENT;
-use super::observation::{Sight, fitted_hand, length_mm};
+use super::observation::{Sight, length_mm};
 use super::starts;
 use super::take_frame::TakeFrame;
-use super::weights::ViewWeights;
 use crate::error::{Error, Result};
-use crate::progress::{NoProgress, Progress};
+use crate::progress::Progress;
 
 /// Frames from which it is found where the hand works.
 const KEY_FRAMES: usize = 12;
 
 /// Least side of a working volume, mm.
 const LEAST_SIDE: f64 = 20.0;
+
+/// A pose and the frame that it is said in.
+pub(super) type Posed = (Pose, DAffine3);
 
 /// Where a hand works, and how far it turns there.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,28 +30,6 @@ pub struct VolumeEstimate {
     pub volume: Volume,
     /// The least and the most of θ_X, θ_Y and θ_Z in it, radians.
     pub turns: [[f64; 2]; 3],
-}
-
-/// Finds out where a hand works from what cameras saw in some frames.
-///
-/// Nothing is assumed of where fingers or back of the hand point. `hand` says whose hand it is, and of
-/// which side; a mean one will do ([`HandShape::adult`]).
-///
-/// # Errors
-/// Frames with another number of masks or landmarks than cameras, or without any hand.
-pub fn estimate_volume(
-    cameras: &[Camera],
-    frames: &[TakeFrame],
-    hand: &HandShape,
-) -> Result<VolumeEstimate> {
-    let (hand, prior, refinement) = (fitted_hand(hand), starts::pose_prior()?, refinement());
-    let weights = ViewWeights::unknown(cameras.len());
-    let fitter = FrameFitter { hand: &hand, prior: &prior, refinement: &refinement, weights };
-    let found = key_frames(cameras, frames, &fitter, &NoProgress)?;
-    let middle = agreed(&found, &hand)?;
-    let reach = 0.5 * length_mm(&hand);
-    let agrees = |found: &&Found| apart(&middle, &found.frame(&hand), reach) < AGREES;
-    Ok(VolumeEstimate::around(&middle, found.iter().filter(agrees), &hand))
 }
 
 /// How frames are fitted while it is not known which views agree: hand and cameras are taken as they
@@ -76,9 +56,6 @@ const SPARSER: usize = 2;
 /// A border that is as far from the hand's as this, in pixels of a crop, begins to count less: a quarter
 /// of a finger's width. How well borders are known is found from the take.
 const NOISE: f64 = 2.0;
-
-/// Hands that turn by less than this, or move by as many half hands, agree.
-const AGREES: f64 = 1.5;
 
 /// Poses of some frames, spread evenly, each found with nothing known.
 pub(super) fn key_frames(
@@ -134,22 +111,36 @@ impl VolumeEstimate {
         found: impl Iterator<Item = &'a Found>,
         hand: &HandShape,
     ) -> Self {
-        let found: Vec<&Found> = found.collect();
-        let frames: Vec<DAffine3> = found.iter().map(|found| found.frame(hand)).collect();
-        let (mut low, mut high) = (middle.translation, middle.translation);
-        for frame in &frames {
-            low = low.min(frame.translation);
-            high = high.max(frame.translation);
-        }
+        let poses: Vec<Posed> = found.map(|found| (found.refined.pose, found.rest)).collect();
+        Self::of(middle, &poses, hand)
+    }
+
+    /// That of a hand's frame and of poses.
+    pub(super) fn of(middle: &DAffine3, poses: &[Posed], hand: &HandShape) -> Self {
+        let frames: Vec<DAffine3> =
+            poses.iter().map(|(pose, rest)| starts::frame_at(pose, rest, hand)).collect();
         let sum = |axis: fn(&DAffine3) -> DVec3| frames.iter().map(axis).sum::<DVec3>();
         let forearm = sum(|frame| frame.matrix3.z_axis).normalize_or(middle.matrix3.z_axis);
         let up = sum(|frame| frame.matrix3.y_axis);
         let up = up.reject_from_normalized(forearm).normalize_or(middle.matrix3.y_axis);
-        let size = (high - low).max(DVec3::splat(LEAST_SIDE));
-        let volume = Volume { center: low.midpoint(high), size, forearm, up };
+        let least = Volume { center: DVec3::ZERO, size: DVec3::splat(LEAST_SIDE), forearm, up };
+        // Sides are along the volume's own axes.
+        let axes = least.rest_frame().matrix3;
+        let wrists =
+            frames.iter().chain([middle]).map(|frame| axes.transpose() * frame.translation);
+        let (low, high) = wrists
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high): (DVec3, DVec3), wrist| {
+                (low.min(wrist), high.max(wrist))
+            });
+        let volume = Volume {
+            center: axes * low.midpoint(high),
+            size: (high - low).max(least.size),
+            ..least
+        };
         let rest = volume.rest_frame();
         let turns = [Dof::ThetaX, Dof::ThetaY, Dof::ThetaZ].map(|dof| {
-            let angles = found.iter().map(|found| found.pose_in(&rest, hand)[dof]);
+            let angle = |(pose, own): &Posed| starts::in_frame(pose, own, &rest, hand)[dof];
+            let angles = poses.iter().map(angle);
             angles.fold([0.0; 2], |[low, high]: [f64; 2], angle| [low.min(angle), high.max(angle)])
         });
         Self { volume, turns }

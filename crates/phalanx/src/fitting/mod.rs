@@ -1,8 +1,8 @@
 //! Hands fitted to what calibrated cameras saw, without a trained model.
 //!
-//! [`fit_take`] goes through a whole take: where the hand works ([`estimate_volume`]), each frame from
-//! several starts, which views disagree, the hand's proportions, and each frame once more in the light
-//! of its neighbours. [`fit_frame`] fits one frame of a hand that is known.
+//! [`fit_take`] goes through a whole take: where the hand works, each frame from several starts, which views
+//! disagree, the hand's proportions, and each frame once more in the light of its neighbours. [`fit_frame`]
+//! fits one frame of a hand that is known.
 
 mod borders;
 mod chain;
@@ -23,10 +23,12 @@ mod take;
 mod take_frame;
 mod tracking;
 mod views;
+mod volume;
 mod weights;
 
-pub use consensus::{VolumeEstimate, estimate_volume};
+pub use consensus::VolumeEstimate;
 pub use report::{FitDoubt, FrameFit, LandmarkFit, Missing, ViewFit};
 pub use take::{Proportions, TakeFit, TakeSettings, fit_frame, fit_take};
 pub use take_frame::TakeFrame;
 pub use tracking::{Delay, TrackSettings, TrackedFrame, Tracker, TrackerState};
+pub use volume::estimate_volume;

@@ -1,12 +1,13 @@
 //! Whole takes of drawn hands, from masks and cameras alone.
 
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use phalanx::{
     Delay, Error, FitDoubt, Missing, NoProgress, Proportions, TakeFrame, TakeSettings,
-    TrackSettings, TrackedFrame, Tracker, estimate_volume, fit_frame, fit_take,
+    TrackSettings, TrackedFrame, Tracker, VolumeEstimate, draw_mask, estimate_volume, fit_frame,
+    fit_take,
 };
 use phalanx_camera::{Camera, Extrinsics, Intrinsics};
-use phalanx_hand::{HandShape, Side};
+use phalanx_hand::{Dof, HandShape, Pose, Side};
 use phalanx_segmentation::Mask;
 
 use crate::drawn::{Drawn, cameras, drawn, drawn_of, hand, mean_error};
@@ -159,8 +160,38 @@ fn a_take_without_a_hand_is_an_error() {
     let fit = fit_take(&cameras, &[nothing], &TakeSettings::default(), &NoProgress);
     assert!(matches!(fit, Err(Error::NoHand)));
     let short = TakeFrame::of_masks(vec![None]);
-    let volume = estimate_volume(&cameras, &[short], &HandShape::adult());
+    let volume = estimate_volume(&cameras, &[short], &HandShape::adult(), &NoProgress);
     assert!(matches!(volume, Err(Error::PictureCount { .. })));
+}
+
+#[test]
+fn the_volume_holds_a_hand_that_goes_far_along_its_own_axes() {
+    let (cameras, hand, rest) = (cameras(), hand(), DAffine3::IDENTITY);
+    let pose = |k: usize| {
+        let mut pose = Pose::REST;
+        pose[Dof::TX] = 36.0 * k as f64 - 90.0;
+        // Turned about the forearm, so that the hand's axes are not the world's, by more and more.
+        pose[Dof::ThetaZ] = 0.4 + 0.1 * k as f64;
+        pose[Dof::IndexPip] = 0.3 * k as f64;
+        pose
+    };
+    let poses: Vec<Pose> = (0..6).map(pose).collect();
+    let frame = |pose: &Pose| {
+        let mask = |camera| draw_mask(camera, &hand, pose, &rest).expect("a hand before it");
+        TakeFrame::of_masks(cameras.iter().map(|camera| Some(mask(camera))).collect())
+    };
+    let frames: Vec<TakeFrame> = poses.iter().map(frame).collect();
+    let found = estimate_volume(&cameras, &frames, &HandShape::adult(), &NoProgress);
+    let VolumeEstimate { volume, turns } = found.expect("a volume");
+    let axes = volume.rest_frame().matrix3.transpose();
+    let way = axes * DVec3::X * 180.0;
+    assert!(way.y.abs() > 60.0, "the hand is turned: {way}");
+    for axis in 0..3 {
+        let expected = way[axis].abs().max(20.0);
+        assert!((volume.size[axis] - expected).abs() < 25.0, "{} for {way}", volume.size);
+    }
+    let turned = (turns[2][1] - turns[2][0]).to_degrees();
+    assert!((turned - 28.6).abs() < 10.0, "{turned}° about the forearm");
 }
 
 fn track(cameras: &[Camera], frames: &[TakeFrame], delay: Delay) -> Vec<TrackedFrame> {
