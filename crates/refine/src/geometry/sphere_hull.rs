@@ -17,6 +17,8 @@ pub(crate) struct SphereHull {
     centers: [DVec3; 3],
     radii: [f64; 3],
     spheres: usize,
+    /// Normals of the planes through the camera's centre and two of the centres, opposite to each.
+    planes: [DVec3; 3],
     /// From where the spheres are held to the primitive, if it is squashed.
     squash: Option<DMat3>,
     /// What undoes the squash of a squashed primitive; rays are taken through it before they are
@@ -56,6 +58,10 @@ impl Sight<'_> {
         if depth < 0.0 { self.centers } else { &self.across }
     }
 }
+
+/// What is as near as something else up to this, mm, is looked at as exactly as that: neighbouring phalanges share a
+/// sphere.
+const ALIKE: f64 = 1e-9;
 
 /// Which sphere of a hull a ray passes most closely.
 struct Nearest {
@@ -123,10 +129,12 @@ impl SphereHull {
             matches!(primitive, Primitive::GeneralisedCylinder { .. }).then(|| primitive.squash());
         let unsquash = squash.map(|squash| squash.inverse());
         let shift = unsquash.map_or(DVec3::ZERO, |m| m * at(0).center - at(0).center);
+        let centers = [0, 1, 2].map(|k| at(k).center + shift);
         Self {
-            centers: [0, 1, 2].map(|k| at(k).center + shift),
+            centers,
             radii: [0, 1, 2].map(|k| at(k).radius),
             spheres: spheres.len(),
+            planes: [(1, 2), (2, 0), (0, 1)].map(|(i, j)| centers[i].cross(centers[j])),
             squash,
             unsquash,
         }
@@ -191,10 +199,10 @@ impl SphereHull {
         let Nearest { distance, weights, through } = match self.spheres {
             1 => nearest(sight.to(depths[0])[0].length() - self.radii[0], [1.0, 0.0, 0.0]),
             2 => {
-                let (distance, t) = self.edge(&sight, 0, 1);
+                let (distance, t) = self.edge(&sight, [0, 1], within)?;
                 nearest(distance, [1.0 - t, t, 0.0])
             }
-            _ => self.triangle(&sight),
+            _ => self.triangle(&sight, within)?,
         };
         if distance >= within {
             return None;
@@ -206,17 +214,18 @@ impl SphereHull {
         Some(ClosestApproach { distance, weights, normal, point: None })
     }
 
-    /// ρ of the hull of two spheres and the second one's weight.
-    fn edge(&self, sight: &Sight<'_>, from: usize, to: usize) -> (f64, f64) {
-        let [first, last] = [sight.depths[from], sight.depths[to]];
+    /// ρ of the hull of two spheres and the second one's weight; nothing where it is surely no less than
+    /// `within`.
+    fn edge(&self, sight: &Sight<'_>, ends: [usize; 2], within: f64) -> Option<(f64, f64)> {
+        let [first, last] = ends.map(|k| sight.depths[k]);
         if (first < 0.0) == (last < 0.0) {
-            return self.part_of_edge(sight.to(first), [from, to], [0.0, 1.0]);
+            return self.part_of_edge(sight.to(first), ends, [0.0, 1.0], within);
         }
         let crossing = first / (first - last);
         let parts = [(first, [0.0, crossing]), (last, [crossing, 1.0])];
-        let [one, other] =
-            parts.map(|(depth, span)| self.part_of_edge(sight.to(depth), [from, to], span));
-        if one.0 <= other.0 { one } else { other }
+        let parts =
+            parts.map(|(depth, span)| self.part_of_edge(sight.to(depth), ends, span, within));
+        parts.into_iter().flatten().min_by(|one, other| one.0.total_cmp(&other.0))
     }
 
     /// The same of spheres whose weight is within a span, with where the ray passes them.
@@ -225,13 +234,20 @@ impl SphereHull {
         offsets: &[DVec3; 3],
         [from, to]: [usize; 2],
         span: [f64; 2],
-    ) -> (f64, f64) {
+        within: f64,
+    ) -> Option<(f64, f64)> {
         let (p, q) = (offsets[from], offsets[to] - offsets[from]);
         let (r, growth) = (self.radii[from], self.radii[to] - self.radii[from]);
         let squared = q.length_squared();
+        let foot = -p.dot(q) / squared;
+        // No sphere comes nearer than the largest one would on the nearest place of the axis.
+        let reach = within + r.max(r + growth) + ALIKE;
+        if reach <= 0.0 || (p + q * foot.clamp(span[0], span[1])).length_squared() >= reach * reach
+        {
+            return None;
+        }
         let beyond = squared - growth * growth;
         let t = if beyond > 1e-12 * squared {
-            let foot = -p.dot(q) / squared;
             let height = (p + q * foot).length();
             (foot + growth * height / (squared * beyond).sqrt()).clamp(span[0], span[1])
         } else if growth > 0.0 {
@@ -240,35 +256,37 @@ impl SphereHull {
         } else {
             span[0]
         };
-        ((p + q * t).length() - r - growth * t, t)
+        Some(((p + q * t).length() - r - growth * t, t))
     }
 
     /// ρ of the hull of three spheres: on an edge or, where the ray goes through the triangle of the
-    /// centres, there.
-    fn triangle(&self, sight: &Sight<'_>) -> Nearest {
-        let mut best =
-            Nearest { distance: f64::INFINITY, weights: [1.0, 0.0, 0.0], through: false };
+    /// centres, there; nothing where it is surely no less than `within`.
+    fn triangle(&self, sight: &Sight<'_>, within: f64) -> Option<Nearest> {
+        let mut best: Option<Nearest> = None;
         for (from, to) in [(0, 1), (1, 2), (2, 0)] {
-            let (distance, t) = self.edge(sight, from, to);
-            if distance < best.distance {
+            let within = best.as_ref().map_or(within, |best| best.distance.min(within));
+            if let Some((distance, t)) = self.edge(sight, [from, to], within)
+                && distance < within
+            {
                 let mut weights = [0.0; 3];
                 weights[from] = 1.0 - t;
                 weights[to] = t;
-                best = Nearest { distance, weights, through: false };
+                best = Some(Nearest { distance, weights, through: false });
             }
         }
-        let Sight { ray, depths, across, .. } = sight;
-        let areas = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| across[i].cross(across[j]).dot(*ray));
+        let Sight { ray, depths, .. } = sight;
+        let areas = self.planes.map(|plane| plane.dot(*ray));
         let whole = areas[0] + areas[1] + areas[2];
         let depth: f64 = areas.iter().zip(depths).map(|(area, depth)| area * depth).sum();
         if depth * whole >= 0.0 && areas.iter().all(|area| area * whole > 0.0) {
             // The middle is far inside; how far does not matter, but must not jump.
             let smallest = (0..3).min_by(|&i, &j| self.radii[i].total_cmp(&self.radii[j]));
             let smallest = smallest.unwrap_or(0);
-            if -self.radii[smallest] < best.distance {
+            let distance = -self.radii[smallest];
+            if best.as_ref().is_none_or(|best| distance < best.distance) {
                 let mut weights = [0.0; 3];
                 weights[smallest] = 1.0;
-                return Nearest { distance: -self.radii[smallest], weights, through: true };
+                return Some(Nearest { distance, weights, through: true });
             }
         }
         best
@@ -332,6 +350,10 @@ mod tests {
             prop_assert!(alike || (fast < -1.9 && slow < fast), "{fast} is not {slow}");
             for beyond in [1e-6, 1.0, 10.0] {
                 prop_assert!(!hull.bound().is_beyond(place, fast + beyond));
+                let [nearer, further] =
+                    [-beyond, beyond].map(|by| hull.closest_approach_within(fast + by, ray));
+                prop_assert_eq!(nearer, None);
+                prop_assert_eq!(further, Some(hull.closest_approach(ray)));
             }
         }
 

@@ -29,8 +29,11 @@ pub(crate) fn boundary_edges(mask: &Mask, edges: &mut Vec<DVec2>) {
 
 /// Calls for every place at which one row of pixels is hand and the other is not.
 fn changes(one: &[u8], other: &[u8], mut at: impl FnMut(usize)) {
-    // Nearly all of a picture is alike: pieces that are need not be looked at pixel by pixel.
+    // Nearly all of a picture is alike: rows and pieces that are need not be looked at pixel by pixel.
     const PIECE: usize = 16;
+    if one == other {
+        return;
+    }
     for (k, (one, other)) in one.chunks(PIECE).zip(other.chunks(PIECE)).enumerate() {
         if one != other {
             let pairs = one.iter().zip(other).enumerate();
