@@ -8,7 +8,11 @@ use phalanx_camera::Rig;
 use phalanx_codebook::{AnyEncoder, Encoder, Scratch};
 use phalanx_hand::{HandShape, Pose, PoseTable, Side};
 use phalanx_io::calibration::{Calibration, Missing, Unit, to_anipose_toml, to_opencv_yaml};
-use phalanx_io::{Source, landmarks};
+use phalanx_io::export::{
+    CoordinateNames, LengthUnit, Placement, bvh, c3d, deviation_file, glb, motion_file, trc,
+};
+use phalanx_io::take::{Take, write_csv, write_json_lines, write_npz};
+use phalanx_io::{Source, evaluation, landmarks, take};
 use phalanx_segmentation::{Cleanup, Mask, Silhouette, SkinModel, WristModel, clean};
 
 /// A target's name, which is also its corpus's, and what it does.
@@ -16,12 +20,14 @@ pub(crate) type Target = (&'static str, fn(&[u8]));
 
 /// All of them.
 #[allow(dead_code, reason = "each fuzz target uses one of them")]
-pub(crate) const TARGETS: [Target; 12] = [
+pub(crate) const TARGETS: [Target; 14] = [
     ("model", model),
     ("part", part),
     ("rig", rig),
     ("calibration", calibration),
     ("landmarks", landmarks),
+    ("take", take),
+    ("reference", reference),
     ("hand", hand),
     ("poses", poses),
     ("skin_model", skin_model),
@@ -99,6 +105,48 @@ pub(crate) fn landmarks(data: &[u8]) {
                 assert!(point.at.is_finite() && 0.0 < point.confidence && point.confidence <= 1.0);
             }
         }
+    }
+}
+
+/// A take in any of its forms, written in all of them and for other tools.
+pub(crate) fn take(data: &[u8]) {
+    let read = [take::read_csv(data), take::read_json_lines(data), take::read_npz(data)];
+    for take in read.into_iter().flatten() {
+        let (mut csv, mut lines) = (Vec::new(), Vec::new());
+        write_csv(&take, &mut csv).expect("what was read can be written");
+        write_json_lines(&take, &mut lines).expect("as lines, too");
+        let npz = write_npz(&take).expect("and as arrays");
+        let again =
+            [take::read_csv(&csv[..]), take::read_json_lines(&lines[..]), take::read_npz(&npz)];
+        for again in again {
+            assert_eq!(again.expect("and read again").frames.len(), take.frames.len());
+        }
+        export(&take);
+    }
+}
+
+/// What a format cannot hold is refused.
+fn export(take: &Take) {
+    let _ = trc(take, "take.trc", Placement::WORLD);
+    let _ = c3d(take, Placement::WORLD);
+    let _ = bvh(take, Placement::WORLD);
+    let _ = glb(take, Placement::WORLD);
+    for file in [motion_file, deviation_file] {
+        let _ = file(take, CoordinateNames::OpenSim, LengthUnit::Millimetre);
+    }
+}
+
+pub(crate) fn reference(data: &[u8]) {
+    let text = String::from_utf8_lossy(data);
+    let read = [
+        evaluation::read_csv(data),
+        evaluation::read_trc(&text),
+        evaluation::read_motion_file(&text),
+    ];
+    for reference in read.into_iter().flatten() {
+        assert!(reference.instants.is_sorted());
+        assert_eq!(reference.poses.len(), reference.instants.len());
+        assert_eq!(reference.joints.len(), reference.instants.len());
     }
 }
 
