@@ -23,11 +23,11 @@ use crate::track::take;
 const DESK: &str = include_str!("../fixtures/desk.toml");
 
 /// Moments that are drawn, and how many a second.
-const MOMENTS: usize = 24;
+const MOMENTS: usize = 60;
 const RATE: f64 = 10.0;
 
 /// Every so many moments are drawn on the sheet, so much larger than they are.
-const SHOWN: usize = 4;
+const SHOWN: usize = 10;
 const SCALE: u32 = 2;
 
 #[derive(Args)]

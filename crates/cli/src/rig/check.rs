@@ -21,8 +21,8 @@ pub(crate) struct Arguments {
     /// The rig.
     #[arg(value_name = "RIG.toml")]
     rig: PathBuf,
-    /// Say what deviation and error to expect of each angle: draw hands in the working volume, and fit them as
-    /// this rig sees them. Real pictures have ragged outlines, so take it for the best that can be.
+    /// Say what deviation and error to expect of each angle: draw a hand that moves in the working volume, and fit
+    /// it as this rig sees it. Real pictures have ragged outlines, so take it for the best that can be.
     #[arg(long)]
     simulate: bool,
     #[command(flatten)]
@@ -92,10 +92,10 @@ pub(crate) fn is_alike(pair: &ViewAngle) -> bool {
 
 /// What to expect of the rig's angles.
 fn expected(text: &mut String, simulation: &Simulation) -> std::fmt::Result {
-    let Simulation { poses, trusted, joints_mm, angles } = simulation;
+    let Simulation { moments, trusted, joints_mm, angles } = simulation;
     writeln!(
         text,
-        "\nof {poses} drawn hands {trusted} are fitted without a doubt, their joints {joints_mm:.1} mm off"
+        "\nof {moments} moments of a drawn hand {trusted} are fitted without a doubt, their joints {joints_mm:.1} mm off"
     )?;
     writeln!(text, "{:16}  {:>12}  {:>14}", "angle", "deviation, °", "mean error, °")?;
     angles.iter().try_for_each(|Angle { name, std_deg, error_deg }| {

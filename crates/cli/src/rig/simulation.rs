@@ -11,15 +11,20 @@ use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Pose};
 use serde::Serialize;
 
-/// Poses that are drawn: a mean deviation is then known to a seventh of itself.
-const POSES: usize = 48;
+/// Moments that are drawn.
+const MOMENTS: usize = 48;
+
+/// So many moments it is from one random pose to the next: a recording shows a hand that moves, and each of its
+/// frames is fitted in the light of its neighbours. Poses that have nothing to do with each other are fitted
+/// worse than any recording's.
+const STEPS: usize = 6;
 
 /// Angles whose place does not depend on where the hand is: of the digits and the wrist.
 const ANGLES: usize = Dof::INTERNAL + 2;
 
 #[derive(Serialize)]
 pub(crate) struct Simulation {
-    pub(crate) poses: usize,
+    pub(crate) moments: usize,
     /// Those whose fit nothing speaks against.
     pub(crate) trusted: usize,
     /// Mean distance of the joints from where they were drawn, mm, over the trusted fits.
@@ -37,16 +42,11 @@ pub(crate) struct Angle {
     pub(crate) error_deg: f64,
 }
 
-/// Draws random poses of a mean adult hand, as sharp as silhouettes can be, and fits them with its proportions
-/// known.
+/// Draws a mean adult hand that goes from one random pose to the next, as sharp as silhouettes can be, and fits
+/// the moments together, as `phalanx track` does, with its proportions known.
 pub(crate) fn simulate(rig: &Rig, progress: &dyn Progress) -> Result<Simulation> {
     let (hand, rest) = (HandShape::adult(), rig.volume.rest_frame());
-    let sampler = SceneSampler {
-        augmentation: Augmentation::NONE,
-        ..SceneSampler::new(PoseSource::for_framing(Framing::Window))
-    };
-    let scenes = sampler.scenes(rig, &hand, POSES);
-    let poses: Vec<Pose> = (0..POSES).map(|number| scenes.scene(number).pose).collect();
+    let poses = motion(rig, &hand);
     // What a camera does not show is missing.
     let masks = |pose: &Pose| {
         rig.cameras.iter().map(|camera| draw_mask(camera, &hand, pose, &rest).ok()).collect()
@@ -57,7 +57,7 @@ pub(crate) fn simulate(rig: &Rig, progress: &dyn Progress) -> Result<Simulation>
     let fit = fit_take(&rig.cameras, &frames, &settings, progress)?;
     let trusted: Vec<_> =
         fit.frames.iter().zip(&poses).filter(|(frame, _)| frame.doubts.is_empty()).collect();
-    ensure!(!trusted.is_empty(), "none of {POSES} drawn hands is fitted without a doubt");
+    ensure!(!trusted.is_empty(), "none of {MOMENTS} drawn hands is fitted without a doubt");
     let mean = |sum: f64| sum / trusted.len() as f64;
     let angle = |dof: Dof| Angle {
         name: dof.name(),
@@ -74,9 +74,24 @@ pub(crate) fn simulate(rig: &Rig, progress: &dyn Progress) -> Result<Simulation>
         distances.sum::<f64>() / 21.0
     };
     Ok(Simulation {
-        poses: POSES,
+        moments: MOMENTS,
         trusted: trusted.len(),
         joints_mm: mean(trusted.iter().map(distance).sum()),
         angles: Dof::ALL.into_iter().take(ANGLES).map(angle).collect(),
     })
+}
+
+/// The poses of a hand that goes evenly from one random pose to the next.
+fn motion(rig: &Rig, hand: &HandShape) -> Vec<Pose> {
+    let sampler = SceneSampler {
+        augmentation: Augmentation::NONE,
+        ..SceneSampler::new(PoseSource::for_framing(Framing::Window))
+    };
+    let scenes = sampler.scenes(rig, hand, MOMENTS.div_ceil(STEPS) + 1);
+    let pose = |moment: usize| {
+        let [from, to] = [0, 1].map(|next| scenes.scene(moment / STEPS + next).pose.0);
+        let share = (moment % STEPS) as f64 / STEPS as f64;
+        Pose(std::array::from_fn(|dof| from[dof] + share * (to[dof] - from[dof])))
+    };
+    (0..MOMENTS).map(pose).collect()
 }

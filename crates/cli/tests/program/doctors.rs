@@ -123,6 +123,11 @@ fn a_simulation_says_what_to_expect_of_a_rig() {
         let [std, error] = ["std_deg", "error_deg"].map(|name| angle[name].as_f64().unwrap());
         assert!(std > 0.0 && std < 90.0 && error < 45.0, "{angle}");
     }
+    // Of errors that keep to deviations the mean is four fifths of a deviation.
+    let mean =
+        |name: &str| angles.iter().map(|angle| angle[name].as_f64().unwrap()).sum::<f64>() / 22.0;
+    let ratio = mean("error_deg") / mean("std_deg");
+    assert!((0.4..1.4).contains(&ratio), "errors are {ratio:.2} deviations");
 }
 
 /// A rig is simulated with its whole pictures, of whatever shape.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::process::Command;
+use std::sync::LazyLock;
 
 use image::codecs::jpeg::JpegEncoder;
 use phalanx::draw_mask;
@@ -14,8 +15,11 @@ use rayon::prelude::*;
 use crate::desk::run;
 use crate::installed;
 
-/// As long as the fingers take to close and open once.
-const FRAMES: usize = 90;
+/// As many as are asked for; by default as long as the fingers take to close and open once.
+static FRAMES: LazyLock<usize> = LazyLock::new(|| {
+    let asked = std::env::var("PHALANX_FRAMES").ok();
+    asked.map_or(90, |frames| frames.parse().expect("a number of frames"))
+});
 const RATE: f64 = 30.0;
 
 /// The most by which angles may differ in the mean, degrees.
@@ -52,7 +56,7 @@ fn record(folder: &Path, camera: &Camera, rig: &Rig) {
     }
     std::fs::create_dir_all(folder.join("video")).unwrap();
     let mut renderer = Renderer::new(camera).unwrap();
-    for frame in 0..FRAMES {
+    for frame in 0..*FRAMES {
         let mask = draw_mask(camera, &hand, &pose(frame), &rest).unwrap();
         mask.save(place("masks").join(format!("{frame:04}.png"))).unwrap();
         let solids = hand.pose(&pose(frame), &rest).primitives;
@@ -78,7 +82,7 @@ fn track(folder: &Path, form: &str, others: &[&str]) -> Take {
 
 /// Mean difference of the joint angles, degrees.
 fn apart(one: &Take, other: &Take) -> f64 {
-    assert_eq!((one.frames.len(), other.frames.len()), (FRAMES, FRAMES));
+    assert_eq!((one.frames.len(), other.frames.len()), (*FRAMES, *FRAMES));
     let mut differences = Vec::new();
     for (one, other) in one.frames.iter().zip(&other.frames) {
         let [one, other] = [one, other].map(|frame| frame.estimate.as_ref().unwrap().pose);
@@ -89,7 +93,7 @@ fn apart(one: &Take, other: &Take) -> f64 {
 }
 
 #[test]
-#[ignore = "tracks 270 moments; installs ffmpeg from Debian"]
+#[ignore = "tracks three recordings; installs ffmpeg from Debian"]
 fn videos_pictures_and_masks_give_the_same_angles() {
     let Some(()) = installed::program("ffmpeg", &["ffmpeg"]) else { return };
     // Left there to be looked at.

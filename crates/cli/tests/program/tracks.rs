@@ -140,7 +140,7 @@ fn the_demo_goes_to_a_new_folder_and_to_no_other() {
     assert_eq!(outcome.code, Some(0), "{outcome:?}");
     let demo = folder.path().join("demo");
     let whole = read_csv(std::fs::File::open(demo.join("take.csv")).unwrap()).unwrap();
-    assert_eq!(whole.frames.len(), 24);
+    assert_eq!(whole.frames.len(), 60);
     assert!(whole.frames.iter().all(phalanx_io::take::TakeFrame::is_trusted));
     assert!(demo.join("sheet.png").is_file() && demo.join("rig.toml").is_file());
     let again = run(folder.path(), ["demo", "--out", "demo"]);
