@@ -40,8 +40,6 @@ struct Outcome {
     executions: usize,
     /// Of the fuzzer as a whole.
     peak_mib: usize,
-    /// Whole seconds of the slowest execution.
-    slowest_seconds: usize,
     /// How it ended, if an input crashed it, took too long or asked for too much memory.
     found: Option<String>,
 }
@@ -61,7 +59,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         let outcome = if log.exists() { Some(Outcome::read(&log)?) } else { None };
         outcomes.push((target.as_str(), outcome));
     }
-    let page = page(&outcomes)?;
+    let earlier = std::fs::read_to_string(files::in_repository(PAGE)).unwrap_or_default();
+    let page = page(&outcomes, &earlier)?;
     files::print(&page)?;
     files::write_whole(&files::in_repository(PAGE), page.as_bytes())?;
     let is_sound = |(_, outcome): &(_, Option<Outcome>)| {
@@ -71,26 +70,29 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-fn page(outcomes: &[(&str, Option<Outcome>)]) -> Result<String> {
+/// The page, with the lines of an earlier one for targets that were not run since.
+fn page(outcomes: &[(&str, Option<Outcome>)], earlier: &str) -> Result<String> {
     let mut page = format!(
         "<!-- Written by `cargo xtask fuzz`; not to be edited. -->\n# Fuzzing\n\n\
          Damaged files, made by libFuzzer from those of `fuzz/corpus`, for everything that is read\n\
          from files. An input is found if it crashes the target, takes longer than \
          {MOST_SECONDS} s, or makes it hold\nmore than {MOST_ALLOCATED_MIB} MiB at once. \
          There are no sanitizers: the crates forbid unsafe code.\nExecutions are those of each target's last run; \
-         the memory is the fuzzer's as a whole, with all inputs\nthat it keeps; the slowest is in whole seconds.\n\n\
-         | target | executions | peak memory, MiB | slowest, s | found |\n|---|--:|--:|--:|---|\n"
+         the memory is the fuzzer's as a whole, with all inputs\nthat it keeps.\n\n\
+         | target | executions | peak memory, MiB | found |\n|---|--:|--:|---|\n"
     );
     for (target, outcome) in outcomes {
+        let start = format!("| {target} | ");
         match outcome {
-            Some(Outcome { executions, peak_mib, slowest_seconds, found }) => {
+            Some(Outcome { executions, peak_mib, found }) => {
                 let found = found.as_deref().unwrap_or("nothing");
-                writeln!(
-                    page,
-                    "| {target} | {executions} | {peak_mib} | {slowest_seconds} | {found} |"
-                )?;
+                writeln!(page, "{start}{executions} | {peak_mib} | {found} |")?;
             }
-            None => writeln!(page, "| {target} | not run | | | |")?,
+            // As an earlier run left it.
+            None => match earlier.lines().find(|line| line.starts_with(&start)) {
+                Some(line) => writeln!(page, "{line}")?,
+                None => writeln!(page, "{start}not run | | |")?,
+            },
         }
     }
     Ok(page)
@@ -173,7 +175,6 @@ impl Outcome {
         Ok(Self {
             executions: statistic("number_of_executed_units")?,
             peak_mib: statistic("peak_rss_mb")?,
-            slowest_seconds: statistic("slowest_unit_time_sec")?,
             found: after("SUMMARY: ").map(str::to_owned),
         })
     }
