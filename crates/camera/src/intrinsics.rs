@@ -186,7 +186,7 @@ impl Intrinsics {
     }
 
     /// From the normalised plane to pixels, leaving out the lens.
-    fn scaled(&self, normalised: DVec2) -> DVec2 {
+    pub fn scaled(&self, normalised: DVec2) -> DVec2 {
         normalised * DVec2::new(self.fx, self.fy) + self.principal_point()
     }
 

@@ -81,7 +81,7 @@ impl Filler {
 
 /// The first index at or after `x`: its ceiling, without a call to the mathematics library.
 fn index_from(x: f64) -> usize {
-    // The cast rounds down, and clamps what is negative to 0.
-    let below = x as usize;
-    below.saturating_add(usize::from((below as f64) < x))
+    // The cast rounds down, and clamps what is negative to 0; 32 bits are cast back faster.
+    let below = x as u32;
+    below.saturating_add(u32::from(f64::from(below) < x)) as usize
 }

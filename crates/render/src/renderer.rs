@@ -330,8 +330,8 @@ impl Renderer {
     /// Appends the outline held in `ideal` in pixels, bent by the lens.
     fn push_outline(&mut self, focal: f64) {
         if self.intrinsics.lens.is_perfect() {
-            let pixels = self.ideal.iter().filter_map(|&p| self.intrinsics.to_pixel(p));
-            self.corners.extend(pixels);
+            let corners = self.ideal.iter().filter(|corner| corner.is_finite());
+            self.corners.extend(corners.map(|&corner| self.intrinsics.scaled(corner)));
             return;
         }
         let Some(last) = self.ideal.last() else { return };

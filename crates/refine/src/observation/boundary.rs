@@ -34,14 +34,20 @@ fn changes(one: &[u8], other: &[u8], mut at: impl FnMut(usize)) {
     if one == other {
         return;
     }
-    for (k, (one, other)) in one.chunks(PIECE).zip(other.chunks(PIECE)).enumerate() {
+    let mut piece = |first: usize, one: &[u8], other: &[u8]| {
+        let pairs = one.iter().zip(other).enumerate();
+        pairs
+            .filter(|(_, (a, b))| Mask::is_hand_level(**a) != Mask::is_hand_level(**b))
+            .for_each(|(x, _)| at(first + x));
+    };
+    // Arrays are compared at once.
+    let ((ones, one_end), (others, other_end)) = (one.as_chunks::<PIECE>(), other.as_chunks());
+    for (k, (one, other)) in ones.iter().zip(others).enumerate() {
         if one != other {
-            let pairs = one.iter().zip(other).enumerate();
-            pairs
-                .filter(|(_, (a, b))| Mask::is_hand_level(**a) != Mask::is_hand_level(**b))
-                .for_each(|(x, _)| at(PIECE * k + x));
+            piece(PIECE * k, one, other);
         }
     }
+    piece(PIECE * ones.len(), one_end, other_end);
 }
 
 /// Which way the background is from an edge: from the mean of the hand's pixels around it to the

@@ -138,6 +138,7 @@ impl Rows {
 
     pub(crate) fn of_pose(&mut self, contact: &Contact<'_>, twists: &Twists) {
         let Contact { bones, points, normal, .. } = contact;
+        let mut slopes = [None; Dof::COUNT];
         let mut k = 0;
         while k < 3 {
             // Spheres of one bone move as one.
@@ -153,7 +154,18 @@ impl Rows {
             }
             for dof in bone.dofs() {
                 let slope = weight * normal.dot(twists.of(dof).velocity(moment / weight));
-                self.add(dof, slope);
+                *slopes[dof.index()].get_or_insert(0.0) += slope;
+            }
+        }
+        if self.own.is_empty() {
+            let slopes = self.slots.iter().zip(slopes);
+            self.own.extend(slopes.filter_map(|(slot, slope)| Some(((*slot)?, slope?))));
+        } else {
+            // Digits that press into each other: two contacts of one residual.
+            for (dof, slope) in Dof::ALL.into_iter().zip(slopes) {
+                if let Some(slope) = slope {
+                    self.add(dof, slope);
+                }
             }
         }
         self.own.sort_unstable_by_key(|&(slot, _)| slot);
