@@ -183,7 +183,7 @@ impl FrameFitter<'_> {
             let postures: Vec<Pose> = starts.iter().take(1).flat_map(starts::postures).collect();
             let fits = self.fits(&rest, &evidence, &[starts, postures].concat())?;
             let Some(refined) = fits.into_iter().next() else { continue };
-            let misfit = self.misfit(&rest, &evidence, &refined.pose, views)?;
+            let misfit = misfit::of_fit(&refined, views);
             if best.as_ref().is_none_or(|best| misfit < best.misfit) {
                 let points = sight.points.clone();
                 let left_out = vec![false; crops.len() + points.len()];
@@ -337,11 +337,14 @@ impl FrameFitter<'_> {
             Postures::All => starts.extend(starts::postures(&own)),
         }
         let used = views_used(&found.crops, &found.points, left_out);
-        let hypothesis = |refined: PoseFit| {
-            let misfit = self.misfit(&rest, &evidence, &refined.pose, used)?;
-            Ok(Found { rest, refined, left_out: left_out.to_vec(), misfit, ..found.clone() })
+        let hypothesis = |refined: PoseFit| Found {
+            rest,
+            misfit: misfit::of_fit(&refined, used),
+            refined,
+            left_out: left_out.to_vec(),
+            ..found.clone()
         };
-        self.fits(&rest, &evidence, &starts)?.into_iter().map(hypothesis).collect()
+        Ok(self.fits(&rest, &evidence, &starts)?.into_iter().map(hypothesis).collect())
     }
 
     /// A pose fitted once more with each digit in other postures, as often as that wins something.
