@@ -22,3 +22,4 @@ pub use primitive::{Primitive, Sphere};
 pub use prior::{sample_pose, sample_pose_independent, sample_posture};
 pub use shape::{FingerShape, ForearmShape, HandShape, PalmShape, Side, ThumbShape};
 pub use twist::{Bone, Twist, Twists};
+pub use variation::Measure;

@@ -37,7 +37,7 @@ impl Default for BundleAdjustment {
         let nuisance = NuisanceParameters::default();
         Self {
             pose_fit: PoseFitSettings { nuisance: Some(nuisance), ..PoseFitSettings::default() },
-            hand: ShapePrior { size: 0.05, each: 0.06 },
+            hand: ShapePrior { size: 0.05, thickness: 0.06, each: 0.06 },
             cameras: None,
         }
     }
@@ -68,8 +68,8 @@ impl BundleFrame {
 pub struct BundleResult {
     /// The hand.
     pub hand: HandShape,
-    /// How well each of its proportions is known, standard deviations of logarithms: the size's, then
-    /// one for every bone and radius in the order of [`HandShape::scaled`].
+    /// How well each of its proportions is known, standard deviations of logarithms, in the order
+    /// of [`ShapePrior::deviations`].
     pub hand_std: Vec<f64>,
     /// The cameras of the silhouettes, then those that have landmarks alone; those whose extrinsics were fitted and that do not move, where they were found to stand, the others as given.
     pub cameras: Vec<Camera>,

@@ -9,7 +9,7 @@ use phalanx_camera::Rig;
 use phalanx_hand::{Dof, HandShape, Landmark, Landmarks, Pose};
 use phalanx_refine::{
     BundleAdjustment, BundleFrame, Error, Evidence, LandmarkObservation, NuisanceParameters,
-    PoseFitSettings, PosePrior, SilhouetteObservation,
+    PoseFitSettings, PosePrior, ShapePrior, SilhouetteObservation,
 };
 use phalanx_render::Renderer;
 use proptest::prelude::*;
@@ -140,11 +140,7 @@ fn points_beside_silhouettes_tell_a_finger_before_the_palm() {
     assert!(both < 0.6 * alone, "{alone} {both}");
     // More is known of it with both.
     let evidence = Evidence { silhouettes: &masks, landmarks: &landmarks };
-    let mut unknown = vec![0.06];
-    let _unchanged = hand.scaled(|| {
-        unknown.push(0.06);
-        1.0
-    });
+    let unknown = ShapePrior { size: 0.06, thickness: 0.06, each: 0.06 }.deviations(&hand);
     let known = |evidence: Evidence<'_>| {
         settings.posterior(&hand, &rest, evidence, &truth, &vague(), &unknown).unwrap().joints
     };

@@ -6,7 +6,7 @@ mod property;
 use desk::{bent, rig};
 use glam::DVec2;
 use phalanx_hand::{Dof, HandShape, JOINTS, Landmark, Landmarks, Pose};
-use phalanx_refine::{LandmarkObservation, PoseFitSettings, PosePrior, Posterior};
+use phalanx_refine::{LandmarkObservation, PoseFitSettings, PosePrior, Posterior, ShapePrior};
 use proptest::prelude::*;
 
 /// How well a pose is known from its joints in all pictures, where points are off by so many pixels.
@@ -26,12 +26,8 @@ fn known(pose: &Pose, points_px: f64, prior: [f64; Dof::COUNT], hand_std: f64) -
         })
         .collect();
     let prior = PosePrior::independent(*pose, &prior).unwrap();
-    // Of the size, and of each bone and radius.
-    let mut proportions = vec![hand_std];
-    let _unchanged = hand.scaled(|| {
-        proportions.push(hand_std);
-        1.0
-    });
+    let proportions = ShapePrior { size: hand_std, thickness: hand_std, each: hand_std };
+    let proportions = proportions.deviations(&hand);
     PoseFitSettings::default().posterior(&hand, &rest, &seen, pose, &prior, &proportions).unwrap()
 }
 

@@ -1,13 +1,15 @@
 //! Which poses of a take's frames are likeliest together.
 
+use phalanx_refine::PosePrior;
+
 use super::frame_fit::Found;
 use super::motion::Motion;
 
 /// Of several poses of each frame, the ones that are likeliest as they follow each other (Viterbi 1967): each is
 /// as unlikely as its views say, and as the way to it from the pose before. `None` of a frame without any.
-pub(super) fn likeliest(hypotheses: Vec<Vec<Found>>) -> Vec<Option<Found>> {
+pub(super) fn likeliest(hypotheses: Vec<Vec<Found>>, prior: &PosePrior) -> Vec<Option<Found>> {
     let best: Vec<Option<Found>> = hypotheses.iter().map(|frame| frame.first().cloned()).collect();
-    let Some(motion) = Motion::of(&best) else { return best };
+    let Some(motion) = Motion::of_found(&best, prior) else { return best };
     let chosen = chosen(&hypotheses, &motion);
     let frames = hypotheses.into_iter().zip(chosen);
     frames.map(|(mut frame, chosen)| Some(frame.swap_remove(chosen?))).collect()
@@ -54,6 +56,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::synthesis::postures::coupled;
 
     /// A pose with one joint bent, which what was seen speaks against so much.
     fn found((bent, energy): (f64, f64)) -> Found {
@@ -117,7 +120,7 @@ mod tests {
             let frame = |frame: Vec<(f64, f64)>| frame.into_iter().map(found).collect();
             let hypotheses: Vec<Vec<Found>> = frames.into_iter().map(frame).collect();
             let known = [0.0, usual].map(|bent| Some(found((bent, 0.0))));
-            let motion = Motion::of(&known).expect("one frame follows another");
+            let motion = Motion::of_found(&known, coupled()).expect("one frame follows another");
             let chosen = chosen(&hypotheses, &motion);
             let own = against(&hypotheses, &motion, &chosen);
             for other in choices(&hypotheses) {
@@ -131,10 +134,10 @@ mod tests {
     #[test]
     fn a_pose_that_nothing_before_or_after_leads_to_is_not_taken() {
         let usual = |k: u32| found((0.02 * f64::from(k), 5.0));
-        let mut hypotheses: Vec<Vec<Found>> = (0..7).map(|k| vec![usual(k)]).collect();
+        let mut hypotheses: Vec<Vec<Found>> = (0..20).map(|k| vec![usual(k)]).collect();
         // It explains the picture a little better.
         hypotheses[3].insert(0, found((1.5, 4.5)));
-        let bent: Vec<f64> = likeliest(hypotheses)
+        let bent: Vec<f64> = likeliest(hypotheses, coupled())
             .into_iter()
             .map(|found| found.expect("every frame has a pose").refined.pose[Dof::IndexPip])
             .collect();

@@ -6,10 +6,15 @@ use phalanx_refine::PosePrior;
 use super::frame_fit::Found;
 use crate::error::Result;
 
-/// Standard deviations of how far each joint angle moves from one frame to the next, radians; infinite for
-/// where the hand is and how it is turned, of which silhouettes tell enough.
+/// How the joint angles of a take move.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Motion([f64; Dof::COUNT]);
+pub(super) struct Motion {
+    /// Mean squares of how far each moves from one frame to the next, radians²; infinite for where the hand is and how
+    /// it is turned, of which silhouettes tell enough.
+    steps: [f64; Dof::COUNT],
+    /// Variances of each, whatever the frame.
+    any: [f64; Dof::COUNT],
+}
 
 /// An angle that never moves further than this may still do so, radians: what the fits of two frames of a
 /// still hand differ by.
@@ -19,27 +24,44 @@ const LEAST: f64 = 0.02;
 pub(super) const FREEDOM: f64 = 3.0;
 
 impl Motion {
-    /// Of a take's poses; `None` where no frame follows another.
-    pub(super) fn of(found: &[Option<Found>]) -> Option<Self> {
-        let pairs =
-            || found.windows(2).filter_map(|pair| Some((pair[0].as_ref()?, pair[1].as_ref()?)));
-        let count = pairs().count();
-        let deviation = |dof: Dof| {
-            let square = |(one, other): (&Found, &Found)| {
-                (other.refined.pose[dof] - one.refined.pose[dof]).powi(2)
-            };
-            (pairs().map(square).sum::<f64>() / count as f64).sqrt().max(LEAST)
+    /// Of what was found in a take, as [`of`](Self::of) its poses.
+    pub(super) fn of_found(found: &[Option<Found>], prior: &PosePrior) -> Option<Self> {
+        let pose = |found: &Option<Found>| Some(found.as_ref()?.refined.pose);
+        Self::of(&found.iter().map(pose).collect::<Vec<_>>(), prior)
+    }
+
+    /// Of a take's poses, of which this was known before; `None` where no frame follows another.
+    fn of(poses: &[Option<Pose>], prior: &PosePrior) -> Option<Self> {
+        let pairs = || poses.windows(2).filter_map(|pair| Some((pair[0]?, pair[1]?)));
+        let step = |dof: Dof| {
+            let squares = pairs().map(|(one, other)| (other[dof] - one[dof]).powi(2));
+            mean(squares).max(LEAST.powi(2))
         };
-        let of = |dof: Dof| if dof.is_internal() { deviation(dof) } else { f64::INFINITY };
-        (count > 0).then(|| Self(Dof::ALL.map(of)))
+        let any = |dof: Dof| {
+            let values = || poses.iter().flatten().map(|pose| pose[dof]);
+            let middle = mean(values());
+            let variance = mean(values().map(|value| (value - middle).powi(2)));
+            variance.max(prior.deviation(dof).powi(2))
+        };
+        let is_any = pairs().next().is_some();
+        let step = |dof: Dof| if dof.is_internal() { step(dof) } else { f64::INFINITY };
+        is_any.then(|| Self { steps: Dof::ALL.map(step), any: Dof::ALL.map(any) })
+    }
+
+    /// How well an angle is known by that of a frame so many frames away, a standard deviation, beside what any frame of
+    /// the take tells of it: any two frames differ by twice the variance. Of stills, and of frames so far away that they
+    /// are not nearer than any, that is nothing (infinite).
+    fn known(&self, dof: Dof, away: usize) -> f64 {
+        let told =
+            (self.steps[dof.index()] * away as f64).recip() - (2.0 * self.any[dof.index()]).recip();
+        told.max(0.0).sqrt().recip()
     }
 
     /// What speaks against one pose so many frames after another: joints walk at random, mostly slowly and at
     /// times fast (Student's distribution).
     pub(super) fn against(&self, one: &Pose, other: &Pose, away: usize) -> f64 {
         let of = |dof: Dof| {
-            let deviations = (other[dof] - one[dof]) / self.0[dof.index()];
-            let square = deviations * deviations / away as f64;
+            let square = ((other[dof] - one[dof]) / self.known(dof, away)).powi(2);
             0.5 * (FREEDOM + 1.0) * (square / FREEDOM).ln_1p()
         };
         Dof::ALL.map(of).iter().sum()
@@ -53,8 +75,56 @@ impl Motion {
         others: &[(usize, &Found)],
     ) -> Result<PosePrior> {
         others.iter().try_fold(prior.clone(), |prior, (away, other)| {
-            let moved = self.0.map(|deviation| deviation * (*away as f64).sqrt());
-            Ok(prior.product(&PosePrior::independent(other.refined.pose, &moved)?)?)
+            let known = Dof::ALL.map(|dof| self.known(dof, *away));
+            Ok(prior.product(&PosePrior::independent(other.refined.pose, &known)?)?)
         })
+    }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / count
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::synthesis::postures::coupled;
+
+    fn bent(angles: &[f64]) -> Vec<Option<Pose>> {
+        let pose = |&angle: &f64| {
+            let mut pose = Pose::REST;
+            pose[Dof::IndexPip] = angle;
+            Some(pose)
+        };
+        angles.iter().map(pose).collect()
+    }
+
+    proptest! {
+        #![proptest_config(crate::property::cases(64))]
+
+        #[test]
+        fn a_frame_further_away_tells_no_more(
+            angles in prop::collection::vec(0.0..1.8_f64, 2..20),
+            away in 1..30_usize,
+        ) {
+            let motion = Motion::of(&bent(&angles), coupled()).expect("one frame follows another");
+            let (nearer, further) =
+                (motion.known(Dof::IndexPip, away), motion.known(Dof::IndexPip, away + 1));
+            prop_assert!(nearer > 0.0 && nearer <= further, "{nearer} {further}");
+        }
+    }
+
+    #[test]
+    fn a_slow_motion_is_known_by_its_neighbours_and_stills_are_not() {
+        let slow: Vec<f64> = (0..40).map(|k| 0.9 - 0.9 * (0.1 * f64::from(k)).cos()).collect();
+        let known =
+            |angles: &[f64]| Motion::of(&bent(angles), coupled()).unwrap().known(Dof::IndexPip, 1);
+        assert!(known(&slow) < 0.1, "{}", known(&slow));
+        // Straight or folded, one as often as the other, in no order.
+        let stills: Vec<f64> = (0..40).map(|k| if k * k % 7 < 3 { 0.0 } else { 1.8 }).collect();
+        assert!(known(&stills).is_infinite(), "{}", known(&stills));
     }
 }

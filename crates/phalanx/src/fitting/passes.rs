@@ -49,7 +49,7 @@ pub(super) fn again(
     };
     let hypotheses: Vec<Vec<Found>> =
         (0..found.len()).into_par_iter().map(once).collect::<Result<_>>()?;
-    Ok(likeliest(hypotheses))
+    Ok(likeliest(hypotheses, fitter.prior))
 }
 
 /// All frames from the first to the last and back, each between its neighbours as they are then, from which
@@ -59,7 +59,7 @@ pub(super) fn swept(
     mut found: Vec<Option<Found>>,
     progress: &dyn Progress,
 ) -> Result<Vec<Option<Found>>> {
-    let Some(motion) = Motion::of(&found) else { return Ok(found) };
+    let Some(motion) = Motion::of_found(&found, fitter.prior) else { return Ok(found) };
     progress.begin("fit each frame between its neighbours", 2 * found.len());
     let count = found.len();
     for k in (0..count).chain((0..count).rev()) {

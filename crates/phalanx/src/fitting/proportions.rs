@@ -15,8 +15,9 @@ use crate::error::Result;
 const LEARNT_FROM: usize = 16;
 
 /// How far hands differ from the mean adult's: the logarithm of the size so that hands of 130 to 215 mm
-/// are within two deviations of their middle, and of every bone and radius by some per cent.
-pub(super) const POPULATION: ShapePrior = ShapePrior { size: 0.126, each: 0.06 };
+/// are within two deviations of their middle, of how thick all of it is by some per cent, and of every bone and radius by as
+/// much again.
+pub(super) const POPULATION: ShapePrior = ShapePrior { size: 0.126, thickness: 0.06, each: 0.06 };
 
 /// A hand, and how well each of its proportions is known (standard deviations of logarithms).
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -28,12 +29,7 @@ pub(super) struct KnownHand {
 impl KnownHand {
     /// A hand of which no more is known than that it is somebody's.
     pub(super) fn anyone(shape: &HandShape) -> Self {
-        let mut std = vec![POPULATION.size];
-        let _unchanged = shape.scaled(|| {
-            std.push(POPULATION.each);
-            1.0
-        });
-        Self { shape: shape.clone(), std }
+        Self { shape: shape.clone(), std: POPULATION.deviations(shape) }
     }
 }
 

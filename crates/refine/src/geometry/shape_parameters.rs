@@ -1,10 +1,10 @@
 //! The proportions of a hand as numbers that can be fitted.
 
 use glam::{DAffine3, DVec3};
-use phalanx_hand::{HandShape, JOINTS, Pose, PosedHand};
+use phalanx_hand::{HandShape, JOINTS, Measure, Pose, PosedHand};
 
-/// How a hand differs from a given one: the logarithms of a factor for its size and of one for every
-/// bone and radius, in the order of [`HandShape::scaled`].
+/// How a hand differs from a given one: the logarithms of a factor for its size, of one for how thick it is, and of
+/// one for every bone and radius, in the order of [`HandShape::scaled`].
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ShapeParameters {
     pub(crate) logarithms: Vec<f64>,
@@ -18,10 +18,13 @@ pub(crate) struct SphereSlope {
     pub(crate) radius: f64,
 }
 
+/// The size's and the thickness's.
+const COMMON: usize = 2;
+
 impl ShapeParameters {
     /// Those of the given hand itself.
     pub(crate) fn of(given: &HandShape) -> Self {
-        let mut logarithms = vec![0.0];
+        let mut logarithms = vec![0.0; COMMON];
         let _as_given = given.scaled(|| {
             logarithms.push(0.0);
             1.0
@@ -31,9 +34,15 @@ impl ShapeParameters {
 
     /// The hand.
     pub(crate) fn hand(&self, given: &HandShape) -> HandShape {
-        let (size, each) = self.logarithms.split_first().expect("the size comes first");
+        let (common, each) = self.logarithms.split_at(COMMON);
         let mut each = each.iter();
-        given.scaled(|| (size + each.next().copied().unwrap_or(0.0)).exp())
+        given.scaled_by(|measure| {
+            let of_all = match measure {
+                Measure::Length => common[0],
+                Measure::Radius => common[0] + common[1],
+            };
+            (of_all + each.next().copied().unwrap_or(0.0)).exp()
+        })
     }
 
     /// How each joint of the posed hand changes with each of the numbers, by differences.

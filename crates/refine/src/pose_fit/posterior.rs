@@ -26,7 +26,8 @@ pub struct Posterior {
 impl PoseFitSettings {
     /// The deviations of a fitted pose (Laplace's approximation): from the curvature of the energy in
     /// pose and proportions together, where each proportion is known to a standard deviation of its
-    /// logarithm, the size's first ([`BundleResult::hand_std`](crate::BundleResult::hand_std)). They are
+    /// logarithm, in the order of [`ShapePrior::deviations`]
+    /// ([`BundleResult::hand_std`](crate::BundleResult::hand_std)). They are
     /// honest where the evidence is weighted by how its boundaries
     /// ([`weighted`](crate::SilhouetteObservation::weighted)) and its points
     /// ([`weighted`](crate::LandmarkObservation::weighted)) err together.
@@ -48,7 +49,7 @@ impl PoseFitSettings {
         if evidence.is_empty() {
             return Err(Error::NoObservation);
         }
-        let anything = ShapePrior { size: 1.0, each: 1.0 };
+        let anything = ShapePrior { size: 1.0, thickness: 1.0, each: 1.0 };
         let problem = Problem {
             given: hand,
             rest,

@@ -2,14 +2,30 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use phalanx_camera::{Camera, Extrinsics};
+use phalanx_hand::HandShape;
 
 /// How uncertain a hand's proportions are: standard deviations of logarithms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShapePrior {
     /// Of the hand's size.
     pub size: f64,
+    /// Of how thick it is for its size: of all radii together.
+    pub thickness: f64,
     /// Of every bone and radius.
     pub each: f64,
+}
+
+impl ShapePrior {
+    /// The deviations of all numbers that describe such a hand: of its size, of its thickness, then of every bone
+    /// and radius in the order of [`HandShape::scaled`].
+    pub fn deviations(&self, hand: &HandShape) -> Vec<f64> {
+        let mut deviations = vec![self.size, self.thickness];
+        let _unchanged = hand.scaled(|| {
+            deviations.push(self.each);
+            1.0
+        });
+        deviations
+    }
 }
 
 /// How uncertain it is where each camera stands, about and along each axis.
@@ -53,7 +69,7 @@ impl Default for NuisanceParameters {
         let turn = 1.2_f64.to_radians();
         Self {
             above_rms_px: 0.38,
-            hand: Some(ShapePrior { size: 0.02, each: 0.06 }),
+            hand: Some(ShapePrior { size: 0.02, thickness: 0.02, each: 0.06 }),
             cameras: Some(ExtrinsicsPrior { turn, shift: 0.5, motion: CameraMotion::PerFrame }),
         }
     }

@@ -153,6 +153,24 @@ impl PosePrior {
         &self.dofs
     }
 
+    /// Standard deviation of a number, in its unit; 0 of one that is known.
+    ///
+    /// ```
+    /// use phalanx_hand::{Dof, Pose};
+    /// use phalanx_refine::PosePrior;
+    ///
+    /// let mut deviations = [0.0; Dof::COUNT];
+    /// deviations[Dof::IndexPip.index()] = 0.3;
+    /// let prior = PosePrior::independent(Pose::REST, &deviations)?;
+    /// assert!((prior.deviation(Dof::IndexPip) - 0.3).abs() < 1e-12);
+    /// assert_eq!(prior.deviation(Dof::IndexDip), 0.0);
+    /// # Ok::<(), phalanx_refine::Error>(())
+    /// ```
+    pub fn deviation(&self, dof: Dof) -> f64 {
+        let own = self.dofs.iter().position(|own| *own == dof);
+        own.map_or(0.0, |k| self.covariance[k * (self.dofs.len() + 1)].sqrt())
+    }
+
     /// The same knowledge about another pose.
     ///
     /// # Errors

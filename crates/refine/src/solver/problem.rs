@@ -84,10 +84,10 @@ impl Problem<'_> {
     /// What is known of the shared numbers: their energy, and for each its Hessian and gradient.
     pub(crate) fn shared_prior(&self, shared: &SharedParameters) -> (f64, Vec<GaussianPenalty>) {
         let mut known = Vec::new();
-        if let Some(ShapePrior { size, each }) = self.freedom.hand {
-            for (k, &logarithm) in shared.shape.logarithms.iter().enumerate() {
-                known.push(GaussianPenalty::new(logarithm, if k == 0 { size } else { each }));
-            }
+        if let Some(prior) = self.freedom.hand {
+            let deviations = prior.deviations(self.given);
+            let numbers = shared.shape.logarithms.iter().zip(deviations);
+            known.extend(numbers.map(|(&number, std)| GaussianPenalty::new(number, std)));
         }
         known.extend(self.penalties_of(&shared.corrections));
         (known.iter().map(|known| known.energy).sum(), known)

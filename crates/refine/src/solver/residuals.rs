@@ -293,7 +293,7 @@ mod tests {
                 rest: &rest,
                 frames: vec![Frame { evidence, prior: &prior }],
                 freedom: FreeParameters {
-                    hand: Some(ShapePrior { size: 1e6, each: 1e6 }),
+                    hand: Some(ShapePrior { size: 1e6, thickness: 1e6, each: 1e6 }),
                     cameras: Some(ExtrinsicsPrior { turn: 1e6, shift: 1e6, motion: moves }),
                 },
             };

@@ -19,7 +19,7 @@ const POSTURES: usize = 2000;
 const CALIBRATION_FRAMES: usize = 20;
 
 /// How far a calibrated hand may still be from the true one.
-const CALIBRATED: ShapePrior = ShapePrior { size: 0.005, each: 0.02 };
+const CALIBRATED: ShapePrior = ShapePrior { size: 0.005, thickness: 0.005, each: 0.02 };
 
 /// Where refinement starts.
 #[derive(Clone, Copy, PartialEq)]

@@ -21,7 +21,7 @@ const CALIBRATED_ON: usize = 20;
 
 /// How far the hand's size and its proportions may be from the mean's, as logarithms. The size
 /// takes up that the calibration's unit is known roughly only.
-const HAND: ShapePrior = ShapePrior { size: 0.2, each: 0.06 };
+const HAND: ShapePrior = ShapePrior { size: 0.2, thickness: 0.06, each: 0.06 };
 
 /// Standard deviation of a border's place in photographs, px: more than in drawn pictures, and over
 /// whole stretches of the border, so that what is seen outweighs what hands do less.
