@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 use super::consensus::evenly;
 use super::frame_fit::{Found, FrameFitter, Seen};
 use super::views;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
-/// Frames that the hand is learnt from, and as many that it is tested on.
+/// Frames that a hand is learnt from first, and as many that it is tested on.
 const LEARNT_FROM: usize = 16;
 
 /// How far hands differ from the mean adult's: the logarithm of the size so that hands of 130 to 215 mm
@@ -42,10 +42,10 @@ pub(super) struct HandEvidence {
     pub(super) persistent: f64,
 }
 
-/// The hand learnt from half of some frames, beginning with the mean hand, if frames of the other half
-/// then fit better than with the hand that they were fitted with; else `None`. Frames whose views contradict
-/// their poses tell nothing. A place of the best view's border tells as much as `border.independent` places that err
-/// alone, and all frames as much as those would that do not err as others do: so well is the hand known.
+/// The hand learnt from some frames, beginning with the mean hand, if one that is learnt from half of them fits the
+/// other half better than the mean hand does; else `None`. Frames whose views contradict their poses tell nothing. A place
+/// of the best view's border tells as much as `border.independent` places that err alone, and all frames as much as those
+/// would that do not err as others do: so well is the hand known.
 pub(super) fn learn(
     mean: &HandShape,
     fitter: &FrameFitter<'_>,
@@ -53,7 +53,7 @@ pub(super) fn learn(
     rest: &DAffine3,
     border: HandEvidence,
 ) -> Result<Option<KnownHand>> {
-    let found: Vec<&Found> = found.iter().flatten().collect();
+    let found = telling(fitter, found)?;
     let frame = |found: &Found| {
         let frame = found.frame(fitter.hand);
         let evidence = fitter.seen(&found.crops, &found.points, &found.left_out, &frame);
@@ -61,26 +61,22 @@ pub(super) fn learn(
         let Seen { silhouettes: observations, landmarks } = evidence;
         BundleFrame { observations, landmarks, start, prior: fitter.prior.clone() }
     };
-    // One camera does not tell a hand's size from its distance.
-    let is_right = |found: &&Found| Ok(found.cameras_used() > 1 && views::is_right(fitter, found)?);
-    let right: Vec<bool> = found.par_iter().map(is_right).collect::<Result<_>>()?;
-    let found: Vec<&Found> =
-        found.into_iter().zip(right).filter(|(_, right)| *right).map(|(found, _)| found).collect();
     let chosen = evenly(found.len(), 2 * LEARNT_FROM);
     let frames = chosen.iter().map(|&k| frame(found[k]));
-    let frames = frames.filter(|frame| !frame.evidence().is_empty());
-    let (seen, held) = alternating(frames);
+    let frames: Vec<BundleFrame> = frames.filter(|frame| !frame.evidence().is_empty()).collect();
+    let (seen, held) = alternating(&frames);
     if held.is_empty() {
         return Ok(None);
     }
     let refinement = fitter.refinement.clone();
     let calibration = BundleAdjustment { pose_fit: refinement, hand: POPULATION, cameras: None };
-    let calibrated = match calibration.run(mean, rest, &seen) {
-        Ok(calibrated) => calibrated,
+    let learnt_from = |frames: &[BundleFrame]| match calibration.run(mean, rest, frames) {
+        Ok(calibrated) => Ok(Some(calibrated)),
         // What these frames leave open stays as it was.
-        Err(phalanx_refine::Error::Precision { .. }) => return Ok(None),
-        Err(error) => return Err(error.into()),
+        Err(phalanx_refine::Error::Precision { .. }) => Ok(None),
+        Err(error) => Err(Error::from(error)),
     };
+    let Some(of_half) = learnt_from(&seen)? else { return Ok(None) };
     let energy = |hand: &HandShape| -> Result<f64> {
         let of_frame = |frame: &BundleFrame| -> Result<f64> {
             let BundleFrame { start, prior, .. } = frame;
@@ -89,9 +85,12 @@ pub(super) fn learn(
         let energies: Vec<f64> = held.par_iter().map(of_frame).collect::<Result<_>>()?;
         Ok(energies.iter().sum())
     };
-    let fits_better = energy(&calibrated.hand)? < energy(fitter.hand)?;
+    if energy(&of_half.hand)? >= energy(mean)? {
+        return Ok(None);
+    }
+    let Some(calibrated) = learnt_from(&frames)? else { return Ok(None) };
     let std = KnownHand::anyone(mean).std.into_iter().zip(&calibrated.hand_std);
-    let frames = seen.len() as f64;
+    let frames = frames.len() as f64;
     let independent = border.independent.min(1.0) / (1.0 + (frames - 1.0) * border.persistent);
     // What the frames tell beside what is known of anyone's hand, as they err together.
     let honest = |(anyone, fitted): (f64, &f64)| {
@@ -99,14 +98,19 @@ pub(super) fn learn(
         (independent * told.max(0.0) + anyone.powi(-2)).powf(-0.5)
     };
     let std = std.map(honest).collect();
-    Ok(fits_better.then_some(KnownHand { shape: calibrated.hand, std }))
+    Ok(Some(KnownHand { shape: calibrated.hand, std }))
+}
+
+/// The frames whose views agree with their poses. One camera does not tell a hand's size from its distance.
+fn telling<'a>(fitter: &FrameFitter<'_>, found: &'a [Option<Found>]) -> Result<Vec<&'a Found>> {
+    let found: Vec<&Found> = found.iter().flatten().collect();
+    let is_right = |found: &&Found| Ok(found.cameras_used() > 1 && views::is_right(fitter, found)?);
+    let right: Vec<bool> = found.par_iter().map(is_right).collect::<Result<_>>()?;
+    Ok(found.into_iter().zip(right).filter(|(_, right)| *right).map(|(found, _)| found).collect())
 }
 
 /// Every other item, and those between.
-fn alternating<T>(items: impl Iterator<Item = T>) -> (Vec<T>, Vec<T>) {
-    let (mut one, mut other) = (Vec::new(), Vec::new());
-    for (k, item) in items.enumerate() {
-        if k % 2 == 0 { one.push(item) } else { other.push(item) }
-    }
-    (one, other)
+fn alternating<T: Clone>(items: &[T]) -> (Vec<T>, Vec<T>) {
+    let from = |first: usize| items.iter().skip(first).step_by(2).cloned().collect();
+    (from(0), from(1))
 }

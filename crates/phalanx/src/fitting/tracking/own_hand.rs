@@ -44,7 +44,7 @@ impl OwnHand {
         &self.kept
     }
 
-    /// The hand, if frames that it was not learnt from fit better with it.
+    /// The hand, if one that is learnt from half of the frames fits the others better than the mean hand.
     pub(super) fn learn(
         &self,
         fitter: &FrameFitter<'_>,
