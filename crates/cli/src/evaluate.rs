@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 
 use crate::form::Form;
 use crate::take_file;
+use phalanx_cli::reading;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -52,9 +53,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
 fn reference(path: &Path) -> Result<Reference> {
     let read = || -> Result<Reference> {
         match take_file::extension(path).as_str() {
-            "csv" => Ok(read_csv(std::fs::File::open(path)?)?),
-            "trc" => Ok(read_trc(&std::fs::read_to_string(path)?)?),
-            "mot" | "sto" => Ok(read_motion_file(&std::fs::read_to_string(path)?)?),
+            "csv" => Ok(read_csv(reading::open(path)?)?),
+            "trc" => Ok(read_trc(&reading::read_text(path)?)?),
+            "mot" | "sto" => Ok(read_motion_file(&reading::read_text(path)?)?),
             "jsonl" | "npz" => Ok(Reference::from(&take_file::read(path)?)),
             _ => bail!("a reference's name ends with .csv, .trc, .mot, .sto, .jsonl or .npz"),
         }

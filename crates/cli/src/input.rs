@@ -6,6 +6,7 @@ use std::str::FromStr;
 use anyhow::{Context, Result, bail};
 use image::DynamicImage;
 use phalanx::{Estimator, decode_picture};
+use phalanx_cli::reading;
 use phalanx_hand::HandShape;
 
 /// The most memory that decoding a picture may take, bytes.
@@ -52,21 +53,21 @@ impl Crop {
 
 /// Reads a model file.
 pub(crate) fn model(path: &Path) -> Result<Estimator> {
-    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+    let bytes = reading::read(path).with_context(|| path.display().to_string())?;
     Estimator::from_bytes(&bytes).with_context(|| path.display().to_string())
 }
 
 /// Reads a hand file.
 pub(crate) fn hand(path: &Path) -> Result<HandShape> {
     let name = || path.display().to_string();
-    let text = std::fs::read_to_string(path).with_context(name)?;
+    let text = reading::read_text(path).with_context(name)?;
     HandShape::from_toml(&text).with_context(name)
 }
 
 /// Reads a picture, and of it the window if one is given.
 pub(crate) fn picture(path: &Path, crop: Option<Crop>) -> Result<DynamicImage> {
     let read = || {
-        let image = decode_picture(&std::fs::read(path)?, MOST_MEMORY)?;
+        let image = decode_picture(&reading::read(path)?, MOST_MEMORY)?;
         match crop {
             Some(crop) => crop.of(&image),
             None => Ok(image),

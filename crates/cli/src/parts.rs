@@ -5,6 +5,8 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use phalanx::PartialTraining;
 
+use crate::reading;
+
 /// Reads the files of parts and merges what is in them.
 ///
 /// # Errors
@@ -13,7 +15,7 @@ pub fn merged(paths: &[impl AsRef<Path>]) -> Result<PartialTraining> {
     let mut merged: Option<PartialTraining> = None;
     for path in paths.iter().map(AsRef::as_ref) {
         let name = || path.display().to_string();
-        let part = PartialTraining::from_bytes(&std::fs::read(path).with_context(name)?)
+        let part = PartialTraining::from_bytes(&reading::read(path).with_context(name)?)
             .with_context(name)?;
         match &mut merged {
             None => merged = Some(part),

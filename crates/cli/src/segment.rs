@@ -6,6 +6,7 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 use image::{DynamicImage, Pixel, RgbImage};
 use phalanx::{Picture, Segment, Segmentation, Segmenter, mask_from, photograph_from};
+use phalanx_cli::reading;
 use phalanx_segmentation::{Mask, PlainBackground, SkinModel};
 
 #[derive(Args, Clone, Default)]
@@ -55,7 +56,7 @@ impl SegmentArguments {
     fn file(&self) -> Result<Segmentation> {
         let path = self.segment.as_deref().unwrap_or(Path::new(""));
         let name = || format!("{} (--segment)", path.display());
-        Segmentation::from_bytes(&std::fs::read(path).with_context(name)?).with_context(name)
+        Segmentation::from_bytes(&reading::read(path).with_context(name)?).with_context(name)
     }
 
     /// The options as they are given on the command line, to be given again.

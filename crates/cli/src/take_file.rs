@@ -1,10 +1,10 @@
 //! Reading takes, and other files whose kind their name tells.
 
-use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
+use phalanx_cli::reading;
 use phalanx_io::take::{
     Take, read_csv, read_json_lines, read_npz, write_csv, write_json_lines, write_npz,
 };
@@ -18,9 +18,9 @@ pub(crate) fn extension(path: &Path) -> String {
 pub(crate) fn read(path: &Path) -> Result<Take> {
     let read = || -> Result<Take> {
         match extension(path).as_str() {
-            "csv" => Ok(read_csv(BufReader::new(File::open(path)?))?),
-            "jsonl" => Ok(read_json_lines(BufReader::new(File::open(path)?))?),
-            "npz" => Ok(read_npz(&std::fs::read(path)?)?),
+            "csv" => Ok(read_csv(BufReader::new(reading::open(path)?))?),
+            "jsonl" => Ok(read_json_lines(BufReader::new(reading::open(path)?))?),
+            "npz" => Ok(read_npz(&reading::read(path)?)?),
             _ => bail!("a take's name ends with .csv, .jsonl or .npz"),
         }
     };

@@ -18,6 +18,7 @@ use crate::progress::Bar;
 use crate::rig::check;
 use phalanx_cli::files::Output;
 use phalanx_cli::parts;
+use phalanx_cli::reading;
 
 /// The rig of the examples: three cameras about a desk, `side`, `top` and `other_side`.
 const DESK: &str = include_str!("../fixtures/desk.toml");
@@ -233,8 +234,7 @@ fn rig(arguments: &Arguments) -> Result<Rig> {
 /// The poses of a file; what is odd about it goes to standard error.
 fn poses(path: &Path) -> Result<Vec<Pose>> {
     let name = || path.display().to_string();
-    let table =
-        PoseTable::read(std::fs::File::open(path).with_context(name)?).with_context(name)?;
+    let table = PoseTable::read(reading::open(path).with_context(name)?).with_context(name)?;
     for warning in &table.warnings {
         eprintln!("phalanx: {}: {warning}", path.display());
     }

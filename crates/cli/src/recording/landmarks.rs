@@ -11,6 +11,7 @@ use phalanx_io::landmarks::{self, LandmarkTrack, number_in_name};
 
 use super::assign::assign;
 use super::{Recording, Stamp};
+use phalanx_cli::reading;
 
 /// The tracks of a rig's cameras, in its order, in pixels of their images; `None` of a camera without any.
 ///
@@ -99,7 +100,7 @@ fn only(path: &Path, side: Side) -> Result<LandmarkTrack> {
 
 fn tracks(path: &Path, side: Side) -> Result<Vec<LandmarkTrack>> {
     let place = || path.display().to_string();
-    let bytes = std::fs::read(path).with_context(place)?;
+    let bytes = reading::read(path).with_context(place)?;
     landmarks::read(&Source { name: &name_of(path), bytes: &bytes }, side).with_context(place)
 }
 

@@ -13,6 +13,7 @@ use rust_h264::nal::{AvccConfig, parse_avcc, parse_avcc_config, parse_sps_info};
 
 use super::yuv::{Colours, Planes};
 use super::{Recording, Stamp};
+use phalanx_cli::reading;
 
 /// The most bytes that one frame may take in the file.
 const MOST_BYTES: u64 = 64 << 20;
@@ -43,7 +44,7 @@ struct Sample {
 
 impl Mp4Video {
     pub(super) fn open(path: &Path) -> Result<Self> {
-        let file = File::open(path)?;
+        let file = reading::open(path)?;
         let size = file.metadata()?.len();
         let mut file = BufReader::new(file);
         let mp4 = Mp4::read(&mut file, size).map_err(|error| anyhow::anyhow!("{error}"))?;

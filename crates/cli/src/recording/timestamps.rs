@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail, ensure};
 use phalanx_camera::Camera;
 
 use super::Stamp;
+use phalanx_cli::reading;
 
 /// The frame times of each camera, where there is a file of them.
 ///
@@ -53,7 +54,7 @@ pub(crate) fn stamped<'a>(
 /// # Errors
 /// A file that cannot be read, absent columns, a time that is no number.
 fn read(path: &Path) -> Result<BTreeMap<String, Vec<f64>>> {
-    let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    let text = reading::read_text(path).with_context(|| path.display().to_string())?;
     parse(&text).with_context(|| path.display().to_string())
 }
 

@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::simulation::{Angle, Simulation, simulate};
 use crate::form::Form;
 use crate::progress::Bar;
+use phalanx_cli::reading;
 
 /// Two views nearer than this see a hand alike, degrees: a triangulated point is then five times less
 /// sure along the view than across it (1 / tan 11°).
@@ -57,7 +58,7 @@ struct Pair {
 /// Reads a rig file, which errors name.
 pub(crate) fn read(path: &Path) -> Result<Rig> {
     let named = || path.display().to_string();
-    let bytes = std::fs::read(path).with_context(named)?;
+    let bytes = reading::read(path).with_context(named)?;
     let advice = || format!("{}: no rig; `phalanx rig import` makes one of a calibration", named());
     let text = std::str::from_utf8(&bytes).with_context(advice)?;
     Rig::from_toml(text).map_err(|error| {

@@ -62,6 +62,42 @@ fn missing_files() {
     desk.refuses(&["side.png", "folder.png"], &["folder.png"]);
 }
 
+/// Reading one would go on until there is no more memory.
+#[cfg(unix)]
+#[test]
+fn devices_that_have_no_end() {
+    const DEVICE: &str = "/dev/zero";
+    if !std::path::Path::new(DEVICE).exists() {
+        println!("skipped: this system has no {DEVICE}");
+        return;
+    }
+    let desk = Desk::new();
+    for end in ["csv", "jsonl", "npz", "mp4", "json"] {
+        std::os::unix::fs::symlink(DEVICE, desk.path(&format!("endless.{end}"))).unwrap();
+    }
+    desk.write_rig("rig.toml");
+    for arguments in [
+        &["estimate", "--model", DEVICE, "side.png", "top.png"][..],
+        &["estimate", "--model", "model", DEVICE, "top.png"],
+        &["estimate", "--model", "model", "--segment", DEVICE, "side.png", "top.png"],
+        &["estimate", "--model", "model", "--refine", "--hand", DEVICE, "side.png", "top.png"],
+        &["train", "--rig", DEVICE, "--out", "new"],
+        &["train", "--poses", DEVICE, "--out", "new"],
+        &["merge", DEVICE, "--out", "new"],
+        &["rig", "import", DEVICE, "--out", "new"],
+        &["rig", "check", DEVICE],
+        &["report", "endless.csv"],
+        &["report", "endless.jsonl"],
+        &["report", "endless.npz"],
+        &["track", "--rig", "rig.toml", "--out", "new.csv", "side=endless.mp4", "top=endless.mp4"],
+        &["track", "--rig", "rig.toml", "--out", "new.csv", "--landmarks", "side=endless.json"],
+    ] {
+        let outcome = run(desk.folder(), arguments);
+        assert_eq!((outcome.code, outcome.out.as_str()), (Some(2), ""), "{arguments:?}");
+        assert!(outcome.err.contains("this is a device"), "{arguments:?}: {}", outcome.err);
+    }
+}
+
 #[test]
 fn files_that_are_no_pictures() {
     let desk = Desk::new();
