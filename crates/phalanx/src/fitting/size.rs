@@ -28,16 +28,16 @@ const LEFT: f64 = 2.0 / 3.0;
 
 /// Over that of the fitter's hand, the size with which a hand near a place agrees best with what views saw in some
 /// frames. Sizes are tried next to each other for as long as that helps. One camera does not tell a hand's size from its
-/// distance: before it the size is left as it is.
+/// distance: before it, and where no other size agrees much better, there is none.
 pub(super) fn of_hand(
     fitter: &FrameFitter<'_>,
     cameras: &[Camera],
     frames: &[TakeFrame],
     place: &DAffine3,
     progress: &dyn Progress,
-) -> Result<f64> {
+) -> Result<Option<f64>> {
     if cameras.len() < 2 {
-        return Ok(1.0);
+        return Ok(None);
     }
     let chosen = evenly(frames.len(), FRAMES);
     let sights = chosen.iter().map(|&k| Sight::of(cameras, &frames[k]));
@@ -66,5 +66,5 @@ pub(super) fn of_hand(
             (best, least) = (step, other);
         }
     }
-    Ok(if least < LEFT * given { STEP.powi(best) } else { 1.0 })
+    Ok((least < LEFT * given).then(|| STEP.powi(best)))
 }

@@ -212,9 +212,10 @@ impl<'a> Take<'a> {
         progress: &dyn Progress,
     ) -> Result<()> {
         let fitter = self.fitter(Weights::Relative);
-        let size = size::of_hand(&fitter, self.cameras, frames, place, progress)?;
-        self.mean = self.mean.scaled(|| size);
-        self.hand = KnownHand::anyone(&self.mean);
+        if let Some(size) = size::of_hand(&fitter, self.cameras, frames, place, progress)? {
+            self.mean = self.mean.scaled(|| size);
+            self.hand = KnownHand::anyone(&self.mean);
+        }
         Ok(())
     }
 

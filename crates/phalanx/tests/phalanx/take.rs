@@ -224,6 +224,24 @@ fn a_hand_is_tracked_frame_by_frame() {
 }
 
 #[test]
+fn the_size_of_a_childs_hand_is_found_as_soon_as_two_cameras_see_it() {
+    let small = hand().scaled(|| 0.7);
+    let settings = TrackSettings { delay: Delay::None, ..TrackSettings::default() };
+    for first in [0, 1] {
+        let Drawn { cameras, mut frames, joints } = drawn_of(&small, 5);
+        frames[..first].iter_mut().for_each(|frame| frame.masks[1..].fill(None));
+        let mut tracker = Tracker::new(&cameras, &settings).expect("a hand");
+        for (k, (frame, truth)) in frames.iter().zip(&joints).enumerate() {
+            let tracked = tracker.push(k as f64 / 30.0, frame).expect("a frame").expect("no delay");
+            let error = mean_error(&tracked.fit.expect("a hand").joints, truth);
+            let ratio = tracker.hand().length_mm() / small.length_mm();
+            assert_eq!((ratio - 1.0).abs() < 0.07, k >= first, "frame {k}: {ratio}");
+            assert!(k != first || error < 5.0, "frame {k}: {error} mm");
+        }
+    }
+}
+
+#[test]
 fn a_camera_that_is_lost_makes_poses_less_certain_and_none_makes_them_unseen() {
     let Drawn { cameras, mut frames, joints } = drawn(9);
     frames[4].masks[0] = None;

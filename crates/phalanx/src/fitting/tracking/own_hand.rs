@@ -18,12 +18,23 @@ const NEW: f64 = 0.15;
 #[derive(Debug, Clone)]
 pub(super) struct OwnHand {
     mean: HandShape,
+    /// Whether the mean hand is of about that person's size.
+    is_sized: bool,
     kept: Vec<Option<Found>>,
 }
 
 impl OwnHand {
     pub(super) fn new(mean: HandShape) -> Self {
-        Self { mean, kept: Vec::new() }
+        Self { mean, is_sized: false, kept: Vec::new() }
+    }
+
+    /// Of somebody whose hand is about as large as this mean hand.
+    pub(super) fn sized(mean: HandShape) -> Self {
+        Self { is_sized: true, ..Self::new(mean) }
+    }
+
+    pub(super) fn is_sized(&self) -> bool {
+        self.is_sized
     }
 
     /// Keeps a frame that was fitted well, if it shows something new; whether there are enough now.

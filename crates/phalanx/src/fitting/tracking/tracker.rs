@@ -21,11 +21,12 @@ use crate::error::{Error, Result};
 use crate::fitting::frame_fit::{Found, FrameFitter};
 use crate::fitting::knowledge::ViewKnowledge;
 use crate::fitting::observation::fitted_hand;
-use crate::fitting::proportions::HandEvidence;
+use crate::fitting::proportions::{HandEvidence, KnownHand};
 use crate::fitting::report::{FrameFit, Reporter};
 use crate::fitting::take::{Known, Proportions, TakeFit};
 use crate::fitting::take_frame::TakeFrame;
-use crate::fitting::{consensus, misfit, starts, views};
+use crate::fitting::{consensus, misfit, size, starts, views};
+use crate::progress::NoProgress;
 
 /// How a hand is tracked.
 #[derive(Debug, Clone, PartialEq)]
@@ -189,10 +190,13 @@ impl Tracker {
         let prediction = last.as_ref().and_then(|last| {
             Some(last.motion.as_ref()?.predicted(time - last.time, &self.noise, self.hand()))
         });
-        let next = match (&last, &prediction) {
-            (Some(last), Some(prediction)) => self.followed(time, frame, last, prediction)?,
-            _ => self.begun(time, frame)?,
+        let next = if let (Some(last), Some(prediction)) = (&last, &prediction) {
+            self.followed(time, frame, last, prediction)?
+        } else {
+            let near = self.rest;
+            self.begun(time, frame, near.as_slice())?
         };
+        let next = self.sized(frame, next)?;
         let due = match (self.delay, &last) {
             (Delay::None, _) => Some(self.report(&next)?),
             (Delay::OneFrame, Some(last)) if self.owes => {
@@ -221,17 +225,37 @@ impl Tracker {
         FrameFitter { hand: self.hand(), prior: &self.postures, refinement, weights }
     }
 
-    /// A frame before which no hand was seen.
-    fn begun(&mut self, time: f64, frame: &TakeFrame) -> Result<Last> {
-        let near: Vec<DAffine3> = self.rest.into_iter().collect();
+    /// A frame before which no hand was seen, or only near some places.
+    fn begun(&mut self, time: f64, frame: &TakeFrame, near: &[DAffine3]) -> Result<Last> {
         let fitter = self.fitter(&self.searching);
-        let found = recover(&fitter, &self.cameras, frame, None, &near)?;
+        let found = recover(&fitter, &self.cameras, frame, None, near)?;
         let found = found.map(|found| self.agreeing(found)).transpose()?;
         let motion = found.as_ref().map(|found| self.starting(found));
         if let Some(motion) = &motion {
             self.rest.get_or_insert(motion.rest);
         }
         Ok(Last { time, found, motion })
+    }
+
+    /// The first frame that shows a hand that is still to be learnt to two cameras: it tells roughly how large the hand is,
+    /// and is fitted again if that is another size than was thought. Any other frame as it is.
+    fn sized(&mut self, frame: &TakeFrame, next: Last) -> Result<Last> {
+        let (Some(own_hand), Some(found)) = (&mut self.own_hand, &next.found) else {
+            return Ok(next);
+        };
+        if found.cameras_used() < 2 || own_hand.is_sized() {
+            return Ok(next);
+        }
+        let place = found.frame(self.hand());
+        let (fitter, frames) = (self.fitter(&self.searching), std::slice::from_ref(frame));
+        let size = size::of_hand(&fitter, &self.cameras, frames, &place, &NoProgress)?;
+        let mean = self.hand().scaled(|| size.unwrap_or(1.0));
+        self.own_hand = Some(OwnHand::sized(mean.clone()));
+        if size.is_none() {
+            return Ok(next);
+        }
+        self.known.hand = KnownHand::anyone(&mean);
+        self.begun(next.time, frame, &[place])
     }
 
     /// A frame of a hand whose motion is known.
