@@ -44,8 +44,8 @@ const SCREENED: usize = 6;
 /// Digits are tried in other postures so often at most: each round may put another digit right.
 const ROUNDS: usize = 3;
 
-/// Share of its energy that a round must win to be followed by another.
-const WORTH_ANOTHER: f64 = 0.02;
+/// Share of what speaks against a fit that a round must win to be followed by another.
+pub(super) const WORTH_ANOTHER: f64 = 0.02;
 
 /// How frames are fitted.
 pub(super) struct FrameFitter<'a> {

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::consensus::{self, VolumeEstimate};
-use super::frame_fit::{Found, FrameFitter};
+use super::frame_fit::{Found, FrameFitter, WORTH_ANOTHER};
 use super::knowledge::ViewKnowledge;
 use super::observation::{Sight, fitted_hand};
 use super::passes;
@@ -74,10 +74,9 @@ impl Known {
     }
 }
 
-/// How often the hand is learnt, each time from frames fitted with it as it was before: a finger that was
-/// taken for another finds its place with a hand that fits. A choice: of two real takes a third time still explained
-/// one better, by a seventh of its energy, and not the other.
-const ROUNDS: usize = 3;
+/// How often the hand is learnt at most, each time from frames fitted with it as it was before: a finger that was
+/// taken for another finds its place with a hand that fits.
+const ROUNDS: usize = 4;
 
 /// Fits a whole take: where the hand works, its proportions, and its pose in every frame.
 ///
@@ -106,27 +105,10 @@ pub fn fit_take(
     let fitter = take.fitter(Weights::Relative);
     let found = passes::again(&fitter, &found, progress)?;
     let found = passes::agreeing(&fitter, &found, progress)?;
-    let mut found = passes::recovered(cameras, frames, &fitter, &found, progress)?;
+    let found = passes::recovered(cameras, frames, &fitter, &found, progress)?;
     take.refinement = &believing;
     take.weigh(&found)?;
-    for _ in 0..ROUNDS {
-        let fitter = take.fitter(Weights::Relative);
-        let learnt = match settings.proportions {
-            Proportions::FromTake => {
-                proportions::learn(&take.mean, &fitter, &found, &middle, take.border())?
-            }
-            Proportions::Given => None,
-        };
-        let is_another = learnt.is_some();
-        take.hand = learnt.unwrap_or(take.hand);
-        let fitter = take.fitter(Weights::Relative);
-        found = passes::again(&fitter, &found, progress)?;
-        found = passes::swept(&fitter, found, progress)?;
-        take.weigh(&found)?;
-        if !is_another {
-            break;
-        }
-    }
+    let found = take.in_rounds(found, settings.proportions, &middle, progress)?;
     let fitter = take.fitter(Weights::Relative);
     let found = passes::agreeing(&fitter, &found, progress)?;
     take.weigh(&found)?;
@@ -162,6 +144,7 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
 }
 
 /// A take that is being fitted.
+#[derive(Clone)]
 struct Take<'a> {
     cameras: &'a [Camera],
     prior: &'a PosePrior,
@@ -217,6 +200,47 @@ impl<'a> Take<'a> {
             self.hand = KnownHand::anyone(&self.mean);
         }
         Ok(())
+    }
+
+    /// Learns the hand and fits the frames with it in turn, for as long as views agree better with each round.
+    fn in_rounds(
+        &mut self,
+        mut found: Vec<Option<Found>>,
+        proportions: Proportions,
+        place: &DAffine3,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Option<Found>>> {
+        let mut least = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            let before = self.clone();
+            let is_learnt = proportions == Proportions::FromTake && self.learn(&found, place)?;
+            let fitter = self.fitter(Weights::Relative);
+            let next = passes::again(&fitter, &found, progress)?;
+            let next = passes::swept(&fitter, next, progress)?;
+            let misfit: f64 = next.iter().flatten().map(|found| found.misfit).sum();
+            if misfit >= least {
+                *self = before;
+                break;
+            }
+            let is_worth_another = misfit < (1.0 - WORTH_ANOTHER) * least;
+            (found, least) = (next, misfit);
+            self.weigh(&found)?;
+            if !is_learnt || !is_worth_another {
+                break;
+            }
+        }
+        Ok(found)
+    }
+
+    /// Learns the hand's proportions; whether these frames tell any.
+    fn learn(&mut self, found: &[Option<Found>], place: &DAffine3) -> Result<bool> {
+        let fitter = self.fitter(Weights::Relative);
+        let learnt = proportions::learn(&self.mean, &fitter, found, place, self.border())?;
+        let is_learnt = learnt.is_some();
+        if let Some(learnt) = learnt {
+            self.hand = learnt;
+        }
+        Ok(is_learnt)
     }
 
     /// Finds out how well borders and points are known.
