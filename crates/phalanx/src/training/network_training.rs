@@ -25,6 +25,7 @@ impl NetworkTraining {
     fn further_epochs(&self) -> usize {
         self.perceptron.epochs.div_ceil(2)
     }
+
     /// Fits components of samples, d × I, and their poses, 28 × I; where views may be missing, for what is
     /// left too.
     pub(crate) fn fit(
