@@ -109,7 +109,6 @@ impl ViewMatcher {
             *last = found.primitive;
             self.correspondences.push(found);
         }
-        let mut last = 0;
         for &edge in self.edges.iter().step_by(every) {
             if !evidence.is_known(edge) {
                 continue;
@@ -119,14 +118,16 @@ impl ViewMatcher {
                 continue;
             }
             let Some(direction) = camera.intrinsics.to_normalised(edge) else { continue };
-            let own = closest(&self.seen, direction.extend(1.0).normalize(), None, last);
-            last = own.primitive;
+            // What is drawn nearby is likely drawn by the same primitive.
+            let hint = self.last[nearest - nearest % every];
+            let ray = direction.extend(1.0).normalize();
+            let own = closest(&self.seen, ray, None, hint.min(primitives.len() - 1));
             if own.approach.normal.truncate().dot(evidence.normals()[nearest]) > 0.0 {
                 continue;
             }
             let ray = evidence.rays()[nearest];
-            let approach = self.seen[last].hull.closest_approach(ray);
-            self.correspondences.push(Correspondence::new(ray, last, approach));
+            let approach = self.seen[own.primitive].hull.closest_approach(ray);
+            self.correspondences.push(Correspondence::new(ray, own.primitive, approach));
         }
         Ok(())
     }

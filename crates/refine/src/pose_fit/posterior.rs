@@ -11,8 +11,8 @@ use crate::pose_fit::settings::PoseFitSettings;
 use crate::priors::nuisance::ShapePrior;
 use crate::priors::pose::PosePrior;
 use crate::solver::loss::RobustLoss;
+use crate::solver::matched_frame::FramePoint;
 use crate::solver::problem::{Frame, FreeParameters, Problem};
-use crate::solver::residuals::linearise;
 
 /// How well a fitted hand is known.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,7 +65,14 @@ impl PoseFitSettings {
         let mut views = self.matchers(evidence.silhouettes)?;
         // Views that were fitted with are believed.
         let loss = RobustLoss { disagreement: f64::INFINITY, ..self.finest() };
-        let system = linearise(&problem, 0, &parameters, &shared, loss, &mut views)?;
+        let at = FramePoint {
+            problem: &problem,
+            frame: 0,
+            parameters: &parameters,
+            shared: &shared,
+            loss,
+        };
+        let system = at.linearised(&mut views)?;
         let mut hessian = system.whole_hessian();
         let own = hessian.nrows() - count;
         for (k, std) in hand_std.iter().enumerate() {

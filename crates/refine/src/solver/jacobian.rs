@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::{DAffine3, DMat3, DVec3};
 use phalanx_camera::Camera;
-use phalanx_hand::{Bone, Dof, JOINTS, PosedHand, Primitive, Twists};
+use phalanx_hand::{Bone, Dof, JOINTS, PosedHand, Primitive, Twist, Twists};
 
 use crate::geometry::correspondence::Correspondence;
 use crate::geometry::self_collision::Penetration;
@@ -113,22 +113,42 @@ impl<'a> Place<'a> {
     }
 }
 
+/// A twist as its turn and the velocity of what is at the world's origin, so that what it does to a residual is linear
+/// in the force and the torque that the residual's slope is.
+#[derive(Clone, Copy)]
+struct Motion {
+    turn: DVec3,
+    shift: DVec3,
+}
+
+impl Motion {
+    fn of(twist: &Twist) -> Self {
+        match twist {
+            Twist::Turn { axis, origin } => Self { turn: *axis, shift: origin.cross(*axis) },
+            Twist::Shift(direction) => Self { turn: DVec3::ZERO, shift: *direction },
+        }
+    }
+}
+
 /// Memory for the rows of one residual.
 pub(crate) struct Rows {
     /// Where each number of a pose is among those that are fitted.
     slots: [Option<usize>; Dof::COUNT],
+    /// How each moves what hangs on it.
+    motions: [Motion; Dof::COUNT],
     pub(crate) own: Row,
     pub(crate) shared: Row,
 }
 
 impl Rows {
-    /// For poses of which these numbers are fitted.
-    pub(crate) fn new(dofs: &[Dof]) -> Self {
+    /// For poses of which these numbers are fitted, and what they move.
+    pub(crate) fn new(dofs: &[Dof], twists: &Twists) -> Self {
         let mut slots = [None; Dof::COUNT];
         for (slot, dof) in dofs.iter().enumerate() {
             slots[dof.index()] = Some(slot);
         }
-        Self { slots, own: Row::new(), shared: Row::new() }
+        let motions = Dof::ALL.map(|dof| Motion::of(twists.of(dof)));
+        Self { slots, motions, own: Row::new(), shared: Row::new() }
     }
 
     pub(crate) fn clear(&mut self) {
@@ -136,9 +156,9 @@ impl Rows {
         self.shared.clear();
     }
 
-    pub(crate) fn of_pose(&mut self, contact: &Contact<'_>, twists: &Twists) {
+    /// Adds the slopes of a contact by the pose.
+    pub(crate) fn of_pose(&mut self, contact: &Contact<'_>) {
         let Contact { bones, points, normal, .. } = contact;
-        let mut slopes = [None; Dof::COUNT];
         let mut k = 0;
         while k < 3 {
             // Spheres of one bone move as one.
@@ -152,19 +172,15 @@ impl Rows {
             if weight == 0.0 {
                 continue;
             }
+            let (force, torque) = (*normal * weight, moment.cross(*normal));
+            let is_first = self.own.is_empty();
             for dof in bone.dofs() {
-                let slope = weight * normal.dot(twists.of(dof).velocity(moment / weight));
-                *slopes[dof.index()].get_or_insert(0.0) += slope;
-            }
-        }
-        if self.own.is_empty() {
-            let slopes = self.slots.iter().zip(slopes);
-            self.own.extend(slopes.filter_map(|(slot, slope)| Some(((*slot)?, slope?))));
-        } else {
-            // Digits that press into each other: two contacts of one residual.
-            for (dof, slope) in Dof::ALL.into_iter().zip(slopes) {
-                if let Some(slope) = slope {
-                    self.add(dof, slope);
+                let Motion { turn, shift } = self.motions[dof.index()];
+                let slope = turn.dot(torque) + shift.dot(force);
+                match self.slots[dof.index()] {
+                    Some(slot) if is_first => self.own.push((slot, slope)),
+                    Some(_) => self.add(dof, slope),
+                    None => {}
                 }
             }
         }
@@ -191,7 +207,6 @@ impl Rows {
         &mut self,
         penetration: &Penetration,
         posed: &PosedHand,
-        twists: &Twists,
         slopes: Option<&[[Vec<SphereSlope>; 3]]>,
     ) {
         self.clear();
@@ -206,7 +221,7 @@ impl Rows {
                 points: [(1.0 - place, centers[0]), (place, centers[1]), (0.0, DVec3::ZERO)],
                 normal: penetration.apart * away,
             };
-            self.of_pose(&contact, twists);
+            self.of_pose(&contact);
             if let Some(slopes) = slopes {
                 self.of_shape(&contact, &slopes[primitive], 0.0);
                 // It is as thick as on average.

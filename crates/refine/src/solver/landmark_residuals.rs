@@ -1,7 +1,7 @@
 //! What landmarks say of a frame: how far each joint is drawn from its point.
 
 use glam::{DVec2, DVec3};
-use phalanx_hand::{Bone, JOINTS, PosedHand, Twists};
+use phalanx_hand::{Bone, JOINTS, PosedHand};
 
 use crate::observation::landmarks::{LandmarkObservation, Projection};
 use crate::solver::jacobian::{Place, Rows};
@@ -69,7 +69,6 @@ impl<'a> LandmarkResiduals<'a> {
         &self,
         system: &mut NormalEquations,
         posed: &PosedHand,
-        twists: &Twists,
         views: usize,
         slots: &Slots<'_>,
         rows: &mut Rows,
@@ -83,7 +82,7 @@ impl<'a> LandmarkResiduals<'a> {
             for (residual, slope) in offset.to_array().into_iter().zip(slopes) {
                 let contact = self.place.joint(&bones, posed.joints[*joint], *slope);
                 rows.clear();
-                rows.of_pose(&contact, twists);
+                rows.of_pose(&contact);
                 if let Some(first) = slots.own_place {
                     rows.own.extend(self.place.row(&contact, first));
                 }

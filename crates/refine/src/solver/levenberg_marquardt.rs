@@ -10,9 +10,9 @@ use crate::observation::silhouette::SilhouetteObservation;
 use crate::priors::gaussian::GaussianPenalty;
 use crate::priors::nuisance::ExtrinsicsCorrection;
 use crate::solver::loss::RobustLoss;
+use crate::solver::matched_frame::{FramePoint, MatchedFrame};
 use crate::solver::normal_equations::{NormalEquations, Step, solve};
 use crate::solver::problem::{FrameParameters, Problem, SharedParameters};
-use crate::solver::residuals::linearise;
 
 /// Where a fit is.
 #[derive(Debug, Clone)]
@@ -80,8 +80,9 @@ pub(crate) struct Stop {
 /// The target of a fit that is worth its steps whatever energy they lead to.
 pub(crate) const ANY_ENERGY: f64 = f64::INFINITY;
 
-/// The damping that a descent begins with, which is next to none.
-const LEAST_DAMPING: f64 = 1e-3;
+/// The damping that a descent begins with, which is little: with a tenth of it a third of all first steps lead up, as
+/// places of the boundary belong to other primitives after them.
+const LEAST_DAMPING: f64 = 1e-2;
 
 /// A frame has converged where the next step promises to win less than this: half the square of the
 /// gradient's norm as the curvature scales it (the Newton decrement; Boyd and Vandenberghe 2004, § 9.5.1). The
@@ -98,7 +99,7 @@ pub(crate) fn levenberg_marquardt(
     views: &mut [Vec<ViewMatcher>],
 ) -> Result<Outcome> {
     let mut state = start;
-    let mut linearisation = linearise_all(problem, &state, loss, views)?;
+    let mut linearisation = linearise(problem, &state, loss, views)?;
     let (mut damping, mut wins, mut steps) = (LEAST_DAMPING, true, 0);
     while steps < stop.steps && wins {
         steps += 1;
@@ -113,8 +114,8 @@ pub(crate) fn levenberg_marquardt(
             break;
         }
         let candidate = moved(problem, &state, &step);
-        match linearise_all(problem, &candidate, loss, views) {
-            Ok(next) if next.energy < linearisation.energy => {
+        match linearise_below(problem, &candidate, loss, linearisation.energy, views) {
+            Ok(Some(next)) if next.energy < linearisation.energy => {
                 wins = linearisation.energy - next.energy >= stop.gain * linearisation.energy;
                 (state, linearisation) = (candidate, next);
                 damping *= 0.3;
@@ -130,23 +131,41 @@ pub(crate) fn levenberg_marquardt(
     Ok(Outcome { state, energy, frames, converged, steps })
 }
 
-fn linearise_all(
+fn linearise(
     problem: &Problem<'_>,
     state: &State,
     loss: RobustLoss,
     views: &mut [Vec<ViewMatcher>],
 ) -> Result<Linearisation> {
+    let linearisation = linearise_below(problem, state, loss, f64::INFINITY, views)?;
+    Ok(linearisation.expect("no energy is above infinity"))
+}
+
+/// The energy of a state and its normal equations; `None` where the energy is above `most`, which is found out before
+/// any slope is worked out.
+fn linearise_below(
+    problem: &Problem<'_>,
+    state: &State,
+    loss: RobustLoss,
+    most: f64,
+    views: &mut [Vec<ViewMatcher>],
+) -> Result<Option<Linearisation>> {
     let (mut energy, shared_prior) = problem.shared_prior(&state.shared);
-    let frames = state.frames.par_iter().zip(views).enumerate();
-    let frames: Vec<NormalEquations> = frames
+    let frames = state.frames.par_iter().zip(&mut *views).enumerate();
+    let matched: Option<Vec<MatchedFrame<'_>>> = frames
         .map(|(frame, (parameters, views))| {
-            linearise(problem, frame, parameters, &state.shared, loss, views)
+            FramePoint { problem, frame, parameters, shared: &state.shared, loss }
+                .matched(views, most)
         })
         .collect::<Result<_>>()?;
+    let Some(matched) = matched else { return Ok(None) };
+    let frames = matched.into_par_iter().zip(&*views);
+    let frames: Vec<NormalEquations> =
+        frames.map(|(frame, views)| frame.linearised(views)).collect();
     for frame in &frames {
         energy += frame.energy;
     }
-    Ok(Linearisation { energy, frames, shared_prior })
+    Ok(Some(Linearisation { energy, frames, shared_prior }))
 }
 
 /// How well each view of each frame agrees with its silhouette: intersection over union.

@@ -1,142 +1,89 @@
-//! The energy of one frame, residual by residual, and its normal equations.
-
-use glam::DVec3;
+//! The residuals of one frame, and its normal equations.
 
 use crate::error::Result;
 use crate::geometry::correspondence::ViewMatcher;
 use crate::geometry::self_collision::{Penetration, penetrations};
-use crate::observation::silhouette::SilhouetteObservation;
 use crate::priors::gaussian::GaussianPenalty;
 use crate::priors::nuisance::ExtrinsicsCorrection;
 use crate::solver::jacobian::{Place, Rows};
 use crate::solver::landmark_residuals::{LandmarkResiduals, Slots};
-use crate::solver::loss::RobustLoss;
+use crate::solver::matched_frame::{FramePoint, MatchedBoundary, MatchedFrame};
 use crate::solver::normal_equations::NormalEquations;
-use crate::solver::problem::{Frame, FrameParameters, Problem, SharedParameters};
+use crate::solver::problem::Frame;
 
-/// Where it is counted how many pixels a millimetre is.
-enum DistanceAt {
-    /// Where the hand is expected: its distance follows from where several views see it.
-    Rest(DVec3),
-    /// Where the hand is. One view sees rays pass a hand the nearer, in millimetres, the closer it comes to
-    /// the camera; only in pixels that says nothing for it.
-    Hand(DVec3),
-}
-
-impl DistanceAt {
-    fn of(problem: &Problem<'_>, frame: usize, parameters: &FrameParameters) -> Self {
-        if problem.frames[frame].evidence.views() > 1 {
-            return Self::Rest(problem.rest.translation);
-        }
-        Self::Hand(problem.rest.transform_point3(parameters.pose.translation()))
-    }
-
-    fn point(&self) -> DVec3 {
-        let (Self::Rest(point) | Self::Hand(point)) = *self;
-        point
-    }
-
-    /// By which share pixels grow as the pose moves by a millimetre, along the axes of the frame at rest.
-    fn slope(&self, seen: &SilhouetteObservation, problem: &Problem<'_>) -> DVec3 {
-        match self {
-            Self::Rest(_) => DVec3::ZERO,
-            Self::Hand(point) => problem.rest.matrix3.transpose() * seen.nearer(*point),
-        }
+impl FramePoint<'_> {
+    /// The energy of the frame and its normal equations.
+    pub(crate) fn linearised(self, views: &mut [ViewMatcher]) -> Result<NormalEquations> {
+        let matched = self.matched(views, f64::INFINITY)?.expect("no energy is above infinity");
+        Ok(matched.linearised(views))
     }
 }
 
-/// The energy of one frame and its normal equations.
-pub(crate) fn linearise(
-    problem: &Problem<'_>,
-    frame: usize,
-    parameters: &FrameParameters,
-    shared: &SharedParameters,
-    loss: RobustLoss,
-    views: &mut [ViewMatcher],
-) -> Result<NormalEquations> {
-    let Frame { evidence, prior } = &problem.frames[frame];
-    let hand = match problem.freedom.hand {
-        Some(_) => shared.shape.hand(problem.given),
-        None => problem.given.clone(),
-    };
-    let posed = hand.pose(&parameters.pose, problem.rest);
-    let twists = hand.twists(&parameters.pose, problem.rest);
-    let slopes = problem
-        .freedom
-        .hand
-        .map(|_| shared.shape.slopes(problem.given, &parameters.pose, problem.rest, &posed));
-    let numbers = prior.dofs().len();
-    let corrections = numbers + evidence.silhouettes.len();
-    let of_hand = problem.freedom.hand.map_or(0, |_| shared.shape.logarithms.len());
-    let of_cameras = ExtrinsicsCorrection::NUMBERS * shared.corrections.len();
-    let own = corrections + ExtrinsicsCorrection::NUMBERS * parameters.corrections.len();
-    let mut system = NormalEquations::new(own, of_hand + of_cameras);
-    system.add_prior(prior, &parameters.pose);
-    system.add_penalties(corrections, &problem.penalties_of(&parameters.corrections));
-    let mut rows = Rows::new(prior.dofs());
-    let correction = |v: usize| parameters.corrections.get(v).or(shared.corrections.get(v));
-    let pivot = problem.rest.translation;
-    let distance_at = DistanceAt::of(problem, frame, parameters);
-    for (v, (view, seen)) in views.iter_mut().zip(evidence.silhouettes).enumerate() {
-        let place = Place::new(seen.camera(), correction(v), pivot);
-        let scale = seen.pixels_per_mm(distance_at.point());
-        let nearer = distance_at.slope(seen, problem);
-        view.match_boundary(&place.seen(&posed.primitives), seen, loss.every)?;
-        let distances = view.correspondences.iter().map(|found| scale * found.approach.distance);
-        let distances: Vec<f64> = distances.collect();
-        let margin = loss.margin(&distances);
-        let energies: f64 = distances.iter().map(|d| loss.energy(d - margin)).sum();
-        let unexplained = loss.unexplained(energies, distances.len());
-        let belief = loss.belief(unexplained, evidence.views());
-        system.begin_boundary(belief.map(|share| share * seen.weight()));
-        system.add_penalties(numbers + v, &[GaussianPenalty::new(margin, loss.margin)]);
-        for (found, distance) in view.correspondences.iter().zip(distances) {
-            let residual = distance - margin;
-            let contact = place.contact(found, &posed, scale);
-            rows.clear();
-            rows.of_pose(&contact, &twists);
-            rows.of_translation(distance * nearer);
-            rows.own.push((numbers + v, -1.0));
-            if !parameters.corrections.is_empty() {
-                let first = corrections + ExtrinsicsCorrection::NUMBERS * v;
-                rows.own.extend(place.row(&contact, first));
+impl MatchedFrame<'_> {
+    /// The energy of the frame and its normal equations; `views` are those that were matched.
+    pub(crate) fn linearised(self, views: &[ViewMatcher]) -> NormalEquations {
+        let Self { at, hand, posed, boundaries, prior: mut system } = self;
+        let FramePoint { problem, frame, parameters, shared, loss } = at;
+        let Frame { evidence, prior } = &problem.frames[frame];
+        let twists = hand.twists(&parameters.pose, problem.rest);
+        let slopes = problem
+            .freedom
+            .hand
+            .map(|_| shared.shape.slopes(problem.given, &parameters.pose, problem.rest, &posed));
+        let numbers = prior.dofs().len();
+        let (corrections, of_hand) = (at.first_correction(), at.of_hand());
+        let mut rows = Rows::new(prior.dofs(), &twists);
+        for (v, (view, boundary)) in views.iter().zip(&boundaries).enumerate() {
+            let MatchedBoundary { place, scale, nearer, distances, margin, weights } = boundary;
+            system.begin_boundary(*weights);
+            system.add_penalties(numbers + v, &[GaussianPenalty::new(*margin, loss.margin)]);
+            for (found, distance) in view.correspondences.iter().zip(distances) {
+                let residual = distance - margin;
+                let contact = place.contact(found, &posed, *scale);
+                rows.clear();
+                rows.of_pose(&contact);
+                rows.of_translation(*distance * *nearer);
+                rows.own.push((numbers + v, -1.0));
+                if !parameters.corrections.is_empty() {
+                    let first = corrections + ExtrinsicsCorrection::NUMBERS * v;
+                    rows.own.extend(place.row(&contact, first));
+                }
+                if let Some(slopes) = &slopes {
+                    rows.of_shape(&contact, &slopes[found.primitive], *scale);
+                }
+                if !shared.corrections.is_empty() {
+                    rows.shared
+                        .extend(place.row(&contact, of_hand + ExtrinsicsCorrection::NUMBERS * v));
+                }
+                let (energy, weight) = (loss.energy(residual), loss.weight(residual));
+                system.add_boundary_residual(residual, energy, weight, &rows.own, &rows.shared);
             }
-            if let Some(slopes) = &slopes {
-                rows.of_shape(&contact, &slopes[found.primitive], scale);
-            }
-            if !shared.corrections.is_empty() {
-                rows.shared
-                    .extend(place.row(&contact, of_hand + ExtrinsicsCorrection::NUMBERS * v));
-            }
-            let energy = loss.energy(residual);
-            let weight = loss.weight(residual);
-            system.add_boundary_residual(residual, energy, weight, &rows.own, &rows.shared);
         }
-    }
-    let joint_slopes = match problem.freedom.hand {
-        Some(_) if !evidence.landmarks.is_empty() => {
-            Some(shared.shape.joint_slopes(problem.given, &parameters.pose, problem.rest))
-        }
-        _ => None,
-    };
-    for (k, seen) in evidence.landmarks.iter().enumerate() {
-        let v = evidence.place_of(k);
-        let place = Place::new(seen.camera(), correction(v), pivot);
-        let of_place = ExtrinsicsCorrection::NUMBERS * v;
-        let slots = Slots {
-            own_place: (!parameters.corrections.is_empty()).then_some(corrections + of_place),
-            shared_place: (!shared.corrections.is_empty()).then_some(of_hand + of_place),
-            shape: joint_slopes.as_deref(),
+        let joint_slopes = match problem.freedom.hand {
+            Some(_) if !evidence.landmarks.is_empty() => {
+                Some(shared.shape.joint_slopes(problem.given, &parameters.pose, problem.rest))
+            }
+            _ => None,
         };
-        let residuals = LandmarkResiduals::new(seen, place, &posed, loss);
-        residuals.add_to(&mut system, &posed, &twists, evidence.views(), &slots, &mut rows);
+        for (k, seen) in evidence.landmarks.iter().enumerate() {
+            let v = evidence.place_of(k);
+            let place = Place::new(seen.camera(), at.correction(v), problem.rest.translation);
+            let of_place = ExtrinsicsCorrection::NUMBERS * v;
+            let slots = Slots {
+                own_place: (!parameters.corrections.is_empty()).then_some(corrections + of_place),
+                shared_place: (!shared.corrections.is_empty()).then_some(of_hand + of_place),
+                shape: joint_slopes.as_deref(),
+            };
+            let residuals = LandmarkResiduals::new(seen, place, &posed, loss);
+            residuals.add_to(&mut system, &posed, evidence.views(), &slots, &mut rows);
+        }
+        for penetration in penetrations(&posed) {
+            rows.of_penetration(&penetration, &posed, slopes.as_deref());
+            let Penetration { excess, .. } = penetration;
+            system.add(excess, penetration.energy(), Penetration::WEIGHT, &rows.own, &rows.shared);
+        }
+        system
     }
-    for penetration in penetrations(&posed) {
-        rows.of_penetration(&penetration, &posed, &twists, slopes.as_deref());
-        let Penetration { excess, .. } = penetration;
-        system.add(excess, penetration.energy(), Penetration::WEIGHT, &rows.own, &rows.shared);
-    }
-    Ok(system)
 }
 
 #[cfg(test)]
@@ -154,9 +101,12 @@ mod tests {
     use crate::geometry::sphere_hull::SphereHull;
     use crate::observation::evidence::Evidence;
     use crate::observation::landmarks::LandmarkObservation;
+    use crate::observation::silhouette::SilhouetteObservation;
     use crate::priors::nuisance::{CameraMotion, ExtrinsicsPrior, ShapePrior};
     use crate::priors::pose::PosePrior;
-    use crate::solver::problem::FreeParameters;
+    use crate::solver::loss::RobustLoss;
+    use crate::solver::matched_frame::DistanceAt;
+    use crate::solver::problem::{FrameParameters, FreeParameters, Problem, SharedParameters};
 
     fn rig() -> Rig {
         Rig::from_toml(include_str!("../../fixtures/desk.toml")).unwrap()
@@ -301,7 +251,15 @@ mod tests {
             let (parameters, shared) = (problem.frame_parameters(0, &pose), problem.shared());
             let mut views: Vec<ViewMatcher> =
                 evidence.silhouettes.iter().map(|own| ViewMatcher::new(own, loss.noise).unwrap()).collect();
-            let system = linearise(&problem, 0, &parameters, &shared, loss, &mut views).unwrap();
+            let at = FramePoint { problem: &problem, frame: 0, parameters: &parameters, shared: &shared, loss };
+            let system = at.linearised(&mut views).unwrap();
+            // It is looked at no further once it is surely above an energy.
+            for share in [0.5, 0.9, 1.0, 2.0] {
+                let found = at.matched(&mut views.clone(), share * system.energy).unwrap();
+                prop_assert!(found.is_some() || share < 1.0, "{share}");
+            }
+            let nothing = at.matched(&mut views.clone(), 0.0).unwrap();
+            prop_assert!(nothing.is_none() || evidence.silhouettes.is_empty());
             // Where a ray goes just through the axis of a solid, distances have a kink.
             let within = |slope: f64, gradient: f64| {
                 (slope - gradient).abs() <= 2e-2 * (1.0 + slope.abs().max(gradient.abs()))
