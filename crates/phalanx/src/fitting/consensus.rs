@@ -75,20 +75,33 @@ pub(super) fn key_frames(
     Ok(found.into_iter().flatten().collect())
 }
 
-/// Where hands of some frames agree that the hand is: the frame that half of the others are nearest to.
+/// One frame in so many that shows the hand's palm where most show its back is enough to doubt most.
+const DISPUTED: usize = 4;
+
+/// Where hands of some frames agree that the hand is; also where those are that show its other side, if they are
+/// many: silhouettes of cameras that look at it from opposite sides hardly tell its palm from its back.
 ///
 /// # Errors
 /// No hand.
-pub(super) fn agreed(found: &[Found], hand: &HandShape) -> Result<DAffine3> {
-    let frames: Vec<DAffine3> = found.iter().map(|found| found.frame(hand)).collect();
+pub(super) fn agreed(frames: &[DAffine3], hand: &HandShape) -> Result<Vec<DAffine3>> {
     let reach = 0.5 * length_mm(hand);
+    let most = central(frames, reach).ok_or(Error::NoHand)?;
+    let back = most.matrix3.y_axis;
+    let opposed: Vec<DAffine3> =
+        frames.iter().copied().filter(|frame| frame.matrix3.y_axis.dot(back) < 0.0).collect();
+    let is_disputed = DISPUTED * opposed.len() >= frames.len();
+    let other = if is_disputed { central(&opposed, reach) } else { None };
+    Ok(std::iter::once(most).chain(other).collect())
+}
+
+/// The frame that half of the others are nearest to.
+fn central(frames: &[DAffine3], reach: f64) -> Option<DAffine3> {
     let median = |one: &DAffine3| {
         let mut all: Vec<f64> = frames.iter().map(|other| apart(one, other, reach)).collect();
         all.sort_by(f64::total_cmp);
         all[all.len() / 2]
     };
-    let best = frames.iter().min_by(|a, b| median(a).total_cmp(&median(b)));
-    best.copied().ok_or(Error::NoHand)
+    frames.iter().min_by(|a, b| median(a).total_cmp(&median(b))).copied()
 }
 
 /// How far one hand's frame is from another's: the angle of its turn, and its way over `reach`, mm.
@@ -144,5 +157,34 @@ impl VolumeEstimate {
             angles.fold([0.0; 2], |[low, high]: [f64; 2], angle| [low.min(angle), high.max(angle)])
         });
         Self { volume, turns }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+
+    use super::*;
+
+    #[test]
+    fn another_side_is_asked_about_where_many_frames_show_it() {
+        let hand = HandShape::adult();
+        let turned = |k: usize, turn: f64| {
+            let turn = DMat3::from_rotation_z(turn + 0.05 * k as f64);
+            DAffine3::from_mat3_translation(turn, DVec3::X * k as f64)
+        };
+        let frames = |opposed: usize| -> Vec<DAffine3> {
+            let side = |k: usize| if k < opposed { std::f64::consts::PI } else { 0.0 };
+            (0..12).map(|k| turned(k, side(k))).collect()
+        };
+        let up = |frame: &DAffine3| frame.matrix3.y_axis.y > 0.0;
+        let sides = |opposed: usize| -> Vec<bool> {
+            agreed(&frames(opposed), &hand).unwrap().iter().map(up).collect()
+        };
+        assert_eq!(sides(0), [true]);
+        assert_eq!(sides(2), [true]);
+        assert_eq!(sides(3), [true, false]);
+        assert_eq!(sides(9), [false, true]);
+        assert!(agreed(&[], &hand).is_err());
     }
 }

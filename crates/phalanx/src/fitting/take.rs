@@ -94,24 +94,18 @@ pub fn fit_take(
 ) -> Result<TakeFit> {
     let (prior, refinement) = (starts::pose_prior()?, consensus::refinement());
     let believing = consensus::believing();
-    let mut take = Take::of(cameras, &settings.hand, &prior, &refinement);
+    let take = Take::of(cameras, &settings.hand, &prior, &refinement);
     let keys = consensus::key_frames(cameras, frames, &take.fitter(Weights::Relative), progress)?;
-    let middle = consensus::agreed(&keys, &take.hand.shape)?;
-    if settings.proportions == Proportions::FromTake {
-        take.find_size(frames, &middle, progress)?;
+    let mut best: Option<Around<'_>> = None;
+    let places: Vec<DAffine3> = keys.iter().map(|key| key.frame(&take.hand.shape)).collect();
+    for middle in consensus::agreed(&places, &take.hand.shape)? {
+        let around =
+            take.clone().around(middle, frames, settings.proportions, &believing, progress)?;
+        if best.as_ref().is_none_or(|best| around.misfit() < best.misfit()) {
+            best = Some(around);
+        }
     }
-    let found =
-        passes::first(cameras, frames, &take.fitter(Weights::Relative), &[middle], progress)?;
-    let fitter = take.fitter(Weights::Relative);
-    let found = passes::again(&fitter, &found, progress)?;
-    let found = passes::agreeing(&fitter, &found, progress)?;
-    let found = passes::recovered(cameras, frames, &fitter, &found, progress)?;
-    take.refinement = &believing;
-    take.weigh(&found)?;
-    let found = take.in_rounds(found, settings.proportions, &middle, progress)?;
-    let fitter = take.fitter(Weights::Relative);
-    let found = passes::agreeing(&fitter, &found, progress)?;
-    take.weigh(&found)?;
+    let Around { take, middle, found } = best.ok_or(Error::NoHand)?;
     let volume = VolumeEstimate::around(&middle, found.iter().flatten(), &take.hand.shape);
     let frames = take.reports(&found, &volume.volume)?;
     let forearm = settings.hand.forearm.clone();
@@ -156,6 +150,20 @@ struct Take<'a> {
     persistent: f64,
 }
 
+/// A take whose frames were fitted around where its hand may be.
+struct Around<'a> {
+    take: Take<'a>,
+    middle: DAffine3,
+    found: Vec<Option<Found>>,
+}
+
+impl Around<'_> {
+    /// How far its views are from agreeing with its frames, in all.
+    fn misfit(&self) -> f64 {
+        self.found.iter().flatten().map(|found| found.misfit).sum()
+    }
+}
+
 /// Which weights views are fitted with.
 #[derive(Clone, Copy)]
 enum Weights {
@@ -185,6 +193,31 @@ impl<'a> Take<'a> {
         };
         let Self { prior, refinement, hand, .. } = self;
         FrameFitter { hand: &hand.shape, prior, refinement, weights }
+    }
+
+    /// Fits the hand and all frames, which are first looked for near a place.
+    fn around(
+        mut self,
+        middle: DAffine3,
+        frames: &[TakeFrame],
+        proportions: Proportions,
+        believing: &'a PoseFitSettings,
+        progress: &dyn Progress,
+    ) -> Result<Around<'a>> {
+        if proportions == Proportions::FromTake {
+            self.find_size(frames, &middle, progress)?;
+        }
+        let fitter = self.fitter(Weights::Relative);
+        let found = passes::first(self.cameras, frames, &fitter, &[middle], progress)?;
+        let found = passes::again(&fitter, &found, progress)?;
+        let found = passes::agreeing(&fitter, &found, progress)?;
+        let found = passes::recovered(self.cameras, frames, &fitter, &found, progress)?;
+        self.refinement = believing;
+        self.weigh(&found)?;
+        let found = self.in_rounds(found, proportions, &middle, progress)?;
+        let found = passes::agreeing(&self.fitter(Weights::Relative), &found, progress)?;
+        self.weigh(&found)?;
+        Ok(Around { take: self, middle, found })
     }
 
     /// Finds out roughly how large the hand is, near a place.
