@@ -20,6 +20,15 @@ pub struct Detections {
 /// are six.
 const MOST: usize = 6;
 
+/// No bare arm is larger, in squares as wide as its wrist: up to the shoulder it is 12 of them long and, on average,
+/// 1.6 wide.
+const LARGEST_ARM: f64 = 20.0;
+
+/// Whether what is behind the wrist may be an arm: behind a finger that is taken for a hand there is more.
+fn may_have_arm(hand: &HandDetection) -> bool {
+    hand.behind <= LARGEST_ARM * hand.width * hand.width
+}
+
 impl Detections {
     /// Looks for hands in a camera's mask of any size.
     pub fn find(camera: &Camera, mask: &Mask, finder: &mut HandDetector) -> Self {
@@ -30,6 +39,9 @@ impl Detections {
         let mut hands = found.unwrap_or_default();
         // Other views can tell which end of an arm is which, so that any end counts alike here.
         hands.sort_by(|a, b| a.mahalanobis2.total_cmp(&b.mahalanobis2));
+        if hands.iter().any(may_have_arm) {
+            hands.retain(may_have_arm);
+        }
         hands.truncate(MOST);
         Self { camera, hands, mask: mask.clone() }
     }
@@ -47,5 +59,32 @@ impl Detections {
             && pixel.x < f64::from(width)
             && pixel.y < f64::from(height);
         is_inside && self.mask.is_hand(pixel.x as u32, pixel.y as u32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use phalanx_camera::Intrinsics;
+
+    use super::*;
+
+    #[test]
+    fn a_rod_is_no_hand_before_a_hand_that_is_no_arm() {
+        let inside = Intrinsics::pinhole(160, 160, 150.0);
+        let camera = Camera::look_at("above", inside, 500.0 * DVec3::Z, DVec3::ZERO, DVec3::Y)
+            .expect("a camera");
+        // A palm on an arm from below, and a thin rod that the palm touches.
+        let mask = Mask::from_fn(160, 160, |x, y| {
+            let (dx, dy) = (f64::from(x) - 79.5, f64::from(y) - 90.0);
+            let palm = (dx / 22.0).powi(2) + (dy / 30.0).powi(2) < 1.0;
+            let arm = dx.abs() < 12.0 && dy > 0.0;
+            palm || arm || (dx.abs() < 2.5 && (-80.0..0.0).contains(&dy))
+        });
+        let mut finder = HandDetector::default();
+        let all = finder.find(&mask, &Cleanup::default(), WristModel::builtin()).expect("hands");
+        let is_rod = |hand: &HandDetection| hand.width < 10.0;
+        assert!(all.iter().any(is_rod), "{all:?}");
+        let kept = Detections::find(&camera, &mask, &mut finder).hands;
+        assert!(!kept.is_empty() && !kept.iter().any(is_rod), "{kept:?}");
     }
 }

@@ -122,6 +122,7 @@ mod tests {
             length: 3.0 * width,
             across: [-width, width],
             area: 4.0 * width * width,
+            behind: 0.0,
             arm: 2.0 * width,
             cut_off: false,
             mahalanobis2,

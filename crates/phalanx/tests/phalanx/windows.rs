@@ -356,6 +356,7 @@ fn located(camera: &Camera, wrist: DVec3, arm: DVec3) -> HandDetection {
         length: 70.0,
         across: [-20.0, 20.0],
         area: 2000.0,
+        behind: 0.0,
         arm: 30.0,
         cut_off: false,
         mahalanobis2: 5.0,

@@ -27,6 +27,8 @@ pub struct HandDetection {
     pub across: [f64; 2],
     /// The hand's area, without the arm, in pixels.
     pub area: f64,
+    /// The area of all that hangs together with the hand behind the wrist, in pixels.
+    pub behind: f64,
     /// How much arm can be seen behind the wrist before a side of it leaves the picture or it ends.
     pub arm: f64,
     /// Whether the hand itself reaches the image border, so that part of it may not be seen.
@@ -242,6 +244,7 @@ impl HandDetector {
             length: 0.0,
             across: [0.0; 2],
             area: 0.0,
+            behind: 0.0,
             arm: self.visible_arm(section) * scale,
             cut_off: false,
             mahalanobis2: candidate.mahalanobis2,
@@ -250,7 +253,11 @@ impl HandDetector {
         let ahead = |&cell: &usize| {
             self.geodesic.distance(cell).is_some_and(|distance| distance >= section as f64)
         };
-        for cell in self.grid.cells().filter(ahead) {
+        for cell in self.grid.cells() {
+            if !ahead(&cell) {
+                hand.behind += self.grid.area(cell);
+                continue;
+            }
             let [x, y] = self.grid.position(cell);
             let [dx, dy] = [x - wrist[0], y - wrist[1]];
             let along = dx * direction[0] + dy * direction[1];
