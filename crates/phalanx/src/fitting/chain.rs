@@ -50,7 +50,6 @@ fn chosen(hypotheses: &[Vec<Found>], motion: &Motion) -> Vec<Option<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use glam::DAffine3;
     use phalanx_hand::{Dof, Pose};
     use phalanx_refine::PoseFit;
     use proptest::prelude::*;
@@ -62,20 +61,9 @@ mod tests {
     fn found((bent, energy): (f64, f64)) -> Found {
         let mut pose = Pose::REST;
         pose[Dof::IndexPip] = bent;
-        let refined = PoseFit {
-            pose,
-            covariance: Vec::new(),
-            ious: Vec::new(),
-            unexplained: Vec::new(),
-            landmarks_unexplained: Vec::new(),
-            boundary_rms_px: 0.0,
-            nuisance_fitted: false,
-            energy,
-            converged: true,
-            steps: 0,
-        };
-        let (crops, points, left_out) = (Vec::new(), Vec::new(), Vec::new());
-        Found { rest: DAffine3::IDENTITY, refined, crops, points, left_out, misfit: 0.0 }
+        let found = Found::at(pose, 0.0);
+        let refined = PoseFit { energy, ..found.refined };
+        Found { refined, ..found }
     }
 
     /// What speaks against one pose of each frame that has any.

@@ -85,6 +85,25 @@ pub(super) struct Found {
 }
 
 impl Found {
+    /// A pose without anything seen.
+    #[cfg(test)]
+    pub(super) fn at(pose: Pose, misfit: f64) -> Self {
+        let refined = PoseFit {
+            pose,
+            covariance: Vec::new(),
+            ious: Vec::new(),
+            unexplained: Vec::new(),
+            landmarks_unexplained: Vec::new(),
+            boundary_rms_px: 0.0,
+            nuisance_fitted: false,
+            energy: 0.0,
+            converged: true,
+            steps: 0,
+        };
+        let (crops, points, left_out) = (Vec::new(), Vec::new(), Vec::new());
+        Self { rest: DAffine3::IDENTITY, refined, crops, points, left_out, misfit }
+    }
+
     /// The hand's frame: its origin at the wrist, z along the forearm.
     pub(super) fn frame(&self, hand: &HandShape) -> DAffine3 {
         starts::frame_at(&self.refined.pose, &self.rest, hand)
@@ -310,7 +329,7 @@ impl FrameFitter<'_> {
         found: &Found,
         left_out: &[bool],
         others: &[&Found],
-        postures: Postures,
+        postures: Postures<'_>,
     ) -> Result<Option<Found>> {
         Ok(self.hypotheses(found, left_out, others, postures)?.into_iter().next())
     }
@@ -321,7 +340,7 @@ impl FrameFitter<'_> {
         found: &Found,
         left_out: &[bool],
         others: &[&Found],
-        postures: Postures,
+        postures: Postures<'_>,
     ) -> Result<Vec<Found>> {
         let rest = found.frame(self.hand);
         let evidence = self.seen(&found.crops, &found.points, left_out, &rest);
@@ -333,7 +352,10 @@ impl FrameFitter<'_> {
         starts.extend(others.iter().map(|other| other.pose_in(&rest, self.hand)));
         match postures {
             Postures::Given => {}
-            Postures::Each => starts.extend(starts::each_digit(&own)),
+            Postures::Each(poses) => {
+                starts.extend(poses.iter().map(|digits| starts::with_digits(&own, digits)));
+                starts.extend(starts::each_digit(&own));
+            }
             Postures::All => starts.extend(starts::postures(&own)),
         }
         let used = views_used(&found.crops, &found.points, left_out);
@@ -350,7 +372,7 @@ impl FrameFitter<'_> {
     /// A pose fitted once more with each digit in other postures, as often as that wins something.
     pub(super) fn improved(&self, mut found: Found) -> Result<Found> {
         for _ in 0..ROUNDS {
-            let Some(again) = self.again(&found, &found.left_out, &[], Postures::Each)? else {
+            let Some(again) = self.again(&found, &found.left_out, &[], Postures::Each(&[]))? else {
                 break;
             };
             let won = found.refined.energy - again.refined.energy;
@@ -422,12 +444,12 @@ pub(super) fn views_used(
 }
 
 /// Which postures of the fingers a fit starts from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Postures {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Postures<'a> {
     /// Those that are given.
     Given,
-    /// Also with each digit alone in other postures.
-    Each,
+    /// Also with each digit alone in other postures, and with the digits of some poses.
+    Each(&'a [Pose]),
     /// Also with every finger straight or folded, in all combinations.
     All,
 }

@@ -16,6 +16,7 @@ mod observation;
 mod passes;
 mod points;
 mod proportions;
+mod repertoire;
 mod report;
 mod size;
 mod starts;

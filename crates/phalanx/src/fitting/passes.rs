@@ -7,6 +7,7 @@ use super::chain::likeliest;
 use super::frame_fit::{Found, FrameFitter, Postures};
 use super::motion::Motion;
 use super::observation::Sight;
+use super::repertoire;
 use super::take_frame::TakeFrame;
 use super::views;
 use crate::error::Result;
@@ -40,9 +41,20 @@ pub(super) fn again(
     progress: &dyn Progress,
 ) -> Result<Vec<Option<Found>>> {
     progress.begin("fit each frame once more", found.len());
+    let good = better_half(found);
+    let shown = repertoire::of(good.iter().flatten());
     let once = |k: usize| {
-        let near: Vec<&Found> = neighbours(found, k).into_iter().map(|(_, found)| found).collect();
-        let again = |own: &Found| fitter.hypotheses(own, &own.left_out, &near, Postures::Each);
+        let mut near = neighbours(found, k);
+        // A row of frames that all are wrong in the same way has right ones before and after it, and others show the
+        // hand in a posture like theirs.
+        let is_good = good[k].is_some();
+        if !is_good {
+            near.extend(neighbours(&good, k));
+        }
+        let postures = if is_good { &[] } else { &shown[..] };
+        let near: Vec<&Found> = near.into_iter().map(|(_, found)| found).collect();
+        let again =
+            |own: &Found| fitter.hypotheses(own, &own.left_out, &near, Postures::Each(postures));
         let fitted = found[k].as_ref().map(again).transpose();
         progress.step();
         Ok(fitted?.unwrap_or_default())
@@ -72,6 +84,14 @@ pub(super) fn swept(
         found[k] = fitter.again(own, &own.left_out, &near, Postures::Given)?;
     }
     Ok(found)
+}
+
+/// Those frames that no more than half of all agree better with.
+fn better_half(found: &[Option<Found>]) -> Vec<Option<Found>> {
+    let mut misfits: Vec<f64> = found.iter().flatten().map(|found| found.misfit).collect();
+    misfits.sort_by(f64::total_cmp);
+    let median = misfits.get(misfits.len() / 2).copied().unwrap_or(0.0);
+    found.iter().map(|found| found.clone().filter(|found| found.misfit <= median)).collect()
 }
 
 /// The nearest frames before and after a frame in which a hand was found, and how many frames each is away.

@@ -62,6 +62,20 @@ pub(super) fn each_digit(pose: &Pose) -> Vec<Pose> {
     fingers.chain(THUMB_DEG.iter().map(|degrees| with(Digit::Thumb, degrees))).collect()
 }
 
+/// A pose with the digits of another.
+pub(super) fn with_digits(pose: &Pose, digits: &Pose) -> Pose {
+    let mut posed = *pose;
+    for dof in of_digits() {
+        posed[dof] = digits[dof];
+    }
+    posed
+}
+
+/// The angles of all digits.
+pub(super) fn of_digits() -> impl Iterator<Item = Dof> {
+    Digit::ALL.into_iter().flat_map(Digit::dofs)
+}
+
 /// The open hand, and the fist.
 pub(super) fn extremes(pose: &Pose) -> [Pose; 2] {
     [posture(pose, 0), posture(pose, (1 << Digit::FINGERS.len()) - 1)]
