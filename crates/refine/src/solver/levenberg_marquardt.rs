@@ -82,7 +82,7 @@ pub(crate) const ANY_ENERGY: f64 = f64::INFINITY;
 
 /// The damping that a descent begins with, which is little: with a tenth of it a third of all first steps lead up, as
 /// places of the boundary belong to other primitives after them.
-const LEAST_DAMPING: f64 = 1e-2;
+const FIRST_DAMPING: f64 = 1e-2;
 
 /// A frame has converged where the next step promises to win less than this: half the square of the
 /// gradient's norm as the curvature scales it (the Newton decrement; Boyd and Vandenberghe 2004, § 9.5.1). The
@@ -100,11 +100,11 @@ pub(crate) fn levenberg_marquardt(
 ) -> Result<Outcome> {
     let mut state = start;
     let mut linearisation = linearise(problem, &state, loss, views)?;
-    let (mut damping, mut wins, mut steps) = (LEAST_DAMPING, true, 0);
+    let (mut damping, mut wins, mut steps) = (FIRST_DAMPING, true, 0);
     while steps < stop.steps && wins {
         steps += 1;
         let Some(step) = solve(&linearisation.frames, &linearisation.shared_prior, damping) else {
-            damping = f64::max(10.0 * damping, LEAST_DAMPING);
+            damping = f64::max(10.0 * damping, FIRST_DAMPING);
             continue;
         };
         if step.predicted_decrease < CONVERGED * state.frames.len() as f64 {
@@ -141,8 +141,8 @@ fn linearise(
     Ok(linearisation.expect("no energy is above infinity"))
 }
 
-/// The energy of a state and its normal equations; `None` where the energy is above `most`, which is found out before
-/// any slope is worked out.
+/// The energy of a state and its normal equations; `None` where the boundaries of a frame alone are surely above `most`,
+/// which is found out before any slope is worked out.
 fn linearise_below(
     problem: &Problem<'_>,
     state: &State,
@@ -152,12 +152,14 @@ fn linearise_below(
 ) -> Result<Option<Linearisation>> {
     let (mut energy, shared_prior) = problem.shared_prior(&state.shared);
     let frames = state.frames.par_iter().zip(&mut *views).enumerate();
-    let matched: Option<Vec<MatchedFrame<'_>>> = frames
+    // All are matched, whatever comes of one: matchers begin with what they matched before.
+    let matched: Vec<Result<Option<MatchedFrame<'_>>>> = frames
         .map(|(frame, (parameters, views))| {
             FramePoint { problem, frame, parameters, shared: &state.shared, loss }
                 .matched(views, most)
         })
-        .collect::<Result<_>>()?;
+        .collect();
+    let matched: Option<Vec<MatchedFrame<'_>>> = matched.into_iter().collect::<Result<_>>()?;
     let Some(matched) = matched else { return Ok(None) };
     let frames = matched.into_par_iter().zip(&*views);
     let frames: Vec<NormalEquations> =

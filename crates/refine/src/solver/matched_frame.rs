@@ -41,12 +41,13 @@ pub(super) struct MatchedBoundary<'a> {
     pub(super) nearer: DVec3,
     /// How far rays pass the hand, px, in the order of the view's correspondences.
     pub(super) distances: Vec<f64>,
+    /// How far the whole boundary lies outside the hand, px.
     pub(super) margin: f64,
     /// How much each place counts in the frame's energy, and in its slope.
     pub(super) weights: [f64; 2],
 }
 
-/// A frame whose views are matched; [`linearised`](Self::linearised) works out the slopes.
+/// A frame whose views are matched.
 pub(crate) struct MatchedFrame<'a> {
     pub(super) at: FramePoint<'a>,
     pub(super) hand: HandShape,

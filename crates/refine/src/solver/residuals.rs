@@ -254,10 +254,7 @@ mod tests {
             let at = FramePoint { problem: &problem, frame: 0, parameters: &parameters, shared: &shared, loss };
             let system = at.linearised(&mut views).unwrap();
             // It is looked at no further once it is surely above an energy.
-            for share in [0.5, 0.9, 1.0, 2.0] {
-                let found = at.matched(&mut views.clone(), share * system.energy).unwrap();
-                prop_assert!(found.is_some() || share < 1.0, "{share}");
-            }
+            prop_assert!(at.matched(&mut views.clone(), system.energy).unwrap().is_some());
             let nothing = at.matched(&mut views.clone(), 0.0).unwrap();
             prop_assert!(nothing.is_none() || evidence.silhouettes.is_empty());
             // Where a ray goes just through the axis of a solid, distances have a kink.
