@@ -3,7 +3,7 @@
 use glam::DVec3;
 use phalanx_camera::{Ray, triangulate};
 
-use crate::localize::detect::Detections;
+use crate::localize::detect::{Detections, may_have_arm};
 use crate::localize::sighting::{Sighting, arm};
 
 /// A hand in space: where its wrist is, and which way its arm points.
@@ -86,7 +86,8 @@ pub fn associate(views: &[Detections], most: usize) -> Vec<Placement> {
 
 /// What may be the hand, and what it says of where that is.
 struct Candidate<'a> {
-    mahalanobis2: f64,
+    /// How little it looks like a hand, and what is behind its wrist like an arm.
+    unlikely: f64,
     sighting: Sighting<'a>,
 }
 
@@ -101,7 +102,8 @@ impl<'a> Seen<'a> {
         let candidate = |hand| {
             // Where the lens maps nothing there is no hand either.
             let sighting = Sighting::new(&view.camera, hand).ok()?;
-            Some(Candidate { mahalanobis2: hand.mahalanobis2, sighting })
+            let before_arm = if may_have_arm(hand) { 0.0 } else { LEFT_OUT };
+            Some(Candidate { unlikely: hand.mahalanobis2 + before_arm, sighting })
         };
         Self { view, candidates: view.hands.iter().filter_map(candidate).collect() }
     }
@@ -191,13 +193,13 @@ fn judged(wrist: DVec3, arm: DVec3, seen: &[Seen<'_>]) -> Placement {
 
 /// How little a candidate is the hand with its wrist at a point and its arm in a direction.
 fn cost(candidate: &Candidate<'_>, wrist: DVec3, arm: DVec3) -> f64 {
-    let Candidate { mahalanobis2, sighting } = candidate;
+    let Candidate { unlikely, sighting } = candidate;
     let width = sighting.width_mm(wrist);
     if width <= 0.0 {
         return f64::INFINITY;
     }
     let offset = (wrist - sighting.wrist.origin).cross(sighting.wrist.direction).length();
-    mahalanobis2
+    unlikely
         + (offset / MISS).powi(2)
         + ((width / WIDTH).ln() / WIDTH_SPREAD).powi(2)
         + (sighting.miss(arm) / TURN).powi(2)

@@ -25,12 +25,12 @@ const MOST: usize = 6;
 const LARGEST_ARM: f64 = 20.0;
 
 /// Whether what is behind the wrist may be an arm: behind a finger that is taken for a hand there is more.
-fn may_have_arm(hand: &HandDetection) -> bool {
+pub(super) fn may_have_arm(hand: &HandDetection) -> bool {
     hand.behind <= LARGEST_ARM * hand.width * hand.width
 }
 
 impl Detections {
-    /// Looks for hands in a camera's mask of any size.
+    /// Looks for hands in a camera's mask of any size. Those before more than an arm come last.
     pub fn find(camera: &Camera, mask: &Mask, finder: &mut HandDetector) -> Self {
         let (width, height) = mask.dimensions();
         let camera = camera.with_intrinsics(camera.intrinsics.resized(width, height));
@@ -39,9 +39,7 @@ impl Detections {
         let mut hands = found.unwrap_or_default();
         // Other views can tell which end of an arm is which, so that any end counts alike here.
         hands.sort_by(|a, b| a.mahalanobis2.total_cmp(&b.mahalanobis2));
-        if hands.iter().any(may_have_arm) {
-            hands.retain(may_have_arm);
-        }
+        hands.sort_by_key(|hand| !may_have_arm(hand));
         hands.truncate(MOST);
         Self { camera, hands, mask: mask.clone() }
     }
@@ -69,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_rod_is_no_hand_before_a_hand_that_is_no_arm() {
+    fn a_rod_before_a_hand_comes_last() {
         let inside = Intrinsics::pinhole(160, 160, 150.0);
         let camera = Camera::look_at("above", inside, 500.0 * DVec3::Z, DVec3::ZERO, DVec3::Y)
             .expect("a camera");
@@ -85,6 +83,6 @@ mod tests {
         let is_rod = |hand: &HandDetection| hand.width < 10.0;
         assert!(all.iter().any(is_rod), "{all:?}");
         let kept = Detections::find(&camera, &mask, &mut finder).hands;
-        assert!(!kept.is_empty() && !kept.iter().any(is_rod), "{kept:?}");
+        assert!(!is_rod(&kept[0]) && kept.is_sorted_by_key(is_rod), "{kept:?}");
     }
 }
