@@ -79,7 +79,8 @@ pub(super) fn key_frames(
 const DISPUTED: usize = 4;
 
 /// Where hands of some frames agree that the hand is; also where those are that show its other side, if they are
-/// many: silhouettes of cameras that look at it from opposite sides hardly tell its palm from its back.
+/// many: silhouettes of cameras that look at it from opposite sides hardly tell its palm from its back. A hand that turns
+/// over in the take has both, too.
 ///
 /// # Errors
 /// No hand.

@@ -123,6 +123,12 @@ impl Found {
         (0..self.crops.len()).filter(is_used).count()
     }
 
+    /// How far all views are from agreeing with it; those that are left out explain nothing.
+    pub(super) fn misfit_of_all_views(&self) -> f64 {
+        let none_left_out = vec![false; self.left_out.len()];
+        misfit::of_fit(&self.refined, views_used(&self.crops, &self.points, &none_left_out))
+    }
+
     /// The pose in another frame of rest.
     pub(super) fn pose_in(&self, rest: &DAffine3, hand: &HandShape) -> Pose {
         starts::in_frame(&self.refined.pose, &self.rest, rest, hand)
@@ -467,4 +473,22 @@ fn distinct(screened: &[Screened], most: usize) -> Vec<Pose> {
         }
     }
     chosen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_view_that_is_left_out_is_not_explained() {
+        let found = Found::at(Pose::REST, 0.0);
+        let refined = PoseFit { ious: vec![0.95], unexplained: vec![0.02], ..found.refined };
+        let of = |left_out: &[bool]| {
+            let (crops, left_out) = (vec![None; left_out.len()], left_out.to_vec());
+            Found { refined: refined.clone(), crops, left_out, ..Found::at(Pose::REST, 0.0) }
+        };
+        let [one, two] = [of(&[false]), of(&[false, true])].map(|own| own.misfit_of_all_views());
+        assert!(one < 0.2 && two > 1.0, "{one} {two}");
+        assert!(two < misfit::of_views(&[], 2));
+    }
 }

@@ -1,6 +1,7 @@
 //! Passes over all frames of a take.
 
 use phalanx_camera::Camera;
+use phalanx_hand::Pose;
 use rayon::prelude::*;
 
 use super::chain::likeliest;
@@ -34,24 +35,26 @@ pub(super) fn first(
 }
 
 /// All frames once more, each from where it was, from where its neighbours are and with each digit in other
-/// postures; of what these lead to, the likeliest poses as they follow each other are kept.
+/// postures; those that agree less than half of all also from the nearest of the better ones, and in the postures that
+/// these show. Of what all this leads to, the likeliest poses as they follow each other are kept.
 pub(super) fn again(
     fitter: &FrameFitter<'_>,
     found: &[Option<Found>],
     progress: &dyn Progress,
 ) -> Result<Vec<Option<Found>>> {
     progress.begin("fit each frame once more", found.len());
-    let good = better_half(found);
-    let shown = repertoire::of(good.iter().flatten());
+    let is_better = is_better(found);
+    let better = found.iter().zip(&is_better).filter(|(_, is_better)| **is_better);
+    let shown = repertoire::of(better.filter_map(|(found, _)| found.as_ref()));
     let once = |k: usize| {
-        let mut near = neighbours(found, k);
-        // A row of frames that all are wrong in the same way has right ones before and after it, and others show the
-        // hand in a posture like theirs.
-        let is_good = good[k].is_some();
-        if !is_good {
-            near.extend(neighbours(&good, k));
+        let mut near = neighbours(found, k, |_| true);
+        let mut postures: &[Pose] = &[];
+        if !is_better[k] {
+            // Frames in a row may all be wrong in the same way.
+            let better = neighbours(found, k, |other| is_better[other]);
+            near.extend(better.into_iter().filter(|(away, _)| *away > NEIGHBOURS));
+            postures = &shown;
         }
-        let postures = if is_good { &[] } else { &shown[..] };
         let near: Vec<&Found> = near.into_iter().map(|(_, found)| found).collect();
         let again =
             |own: &Found| fitter.hypotheses(own, &own.left_out, &near, Postures::Each(postures));
@@ -77,7 +80,7 @@ pub(super) fn swept(
     for k in (0..count).chain((0..count).rev()) {
         progress.step();
         let Some(own) = &found[k] else { continue };
-        let near = neighbours(&found, k);
+        let near = neighbours(&found, k, |_| true);
         let prior = motion.beside(fitter.prior, &near)?;
         let near: Vec<&Found> = near.into_iter().map(|(_, found)| found).collect();
         let fitter = fitter.with_prior(&prior);
@@ -86,17 +89,23 @@ pub(super) fn swept(
     Ok(found)
 }
 
-/// Those frames that no more than half of all agree better with.
-fn better_half(found: &[Option<Found>]) -> Vec<Option<Found>> {
+/// Which frames' misfit is no more than the median.
+fn is_better(found: &[Option<Found>]) -> Vec<bool> {
     let mut misfits: Vec<f64> = found.iter().flatten().map(|found| found.misfit).collect();
     misfits.sort_by(f64::total_cmp);
     let median = misfits.get(misfits.len() / 2).copied().unwrap_or(0.0);
-    found.iter().map(|found| found.clone().filter(|found| found.misfit <= median)).collect()
+    found.iter().map(|found| found.as_ref().is_some_and(|own| own.misfit <= median)).collect()
 }
 
-/// The nearest frames before and after a frame in which a hand was found, and how many frames each is away.
-fn neighbours(found: &[Option<Found>], k: usize) -> Vec<(usize, &Found)> {
-    let of = |other: usize| Some((k.abs_diff(other), found[other].as_ref()?));
+/// The nearest frames before and after a frame that count and in which a hand was found, and how many frames each is away.
+fn neighbours(
+    found: &[Option<Found>],
+    k: usize,
+    is_counted: impl Fn(usize) -> bool,
+) -> Vec<(usize, &Found)> {
+    let of = |other: usize| {
+        found[other].as_ref().filter(|_| is_counted(other)).map(|own| (k.abs_diff(other), own))
+    };
     let before = (0..k).rev().filter_map(of).take(NEIGHBOURS);
     before.chain((k + 1..found.len()).filter_map(of).take(NEIGHBOURS)).collect()
 }
@@ -116,10 +125,8 @@ pub(super) fn recovered(
         None => Ok(false),
     };
     let right: Vec<bool> = found.par_iter().map(is_right).collect::<Result<_>>()?;
-    let trusted: Vec<Option<Found>> =
-        found.iter().zip(&right).map(|(found, &right)| found.clone().filter(|_| right)).collect();
     let once = |k: usize| -> Result<Option<Found>> {
-        let near = neighbours(&trusted, k);
+        let near = neighbours(found, k, |other| right[other]);
         if right[k] || near.is_empty() {
             return Ok(found[k].clone());
         }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::consensus::{self, VolumeEstimate};
 use super::frame_fit::{Found, FrameFitter, WORTH_ANOTHER};
 use super::knowledge::ViewKnowledge;
+use super::misfit;
 use super::observation::{Sight, fitted_hand};
 use super::passes;
 use super::proportions::{self, HandEvidence, KnownHand};
@@ -158,9 +159,12 @@ struct Around<'a> {
 }
 
 impl Around<'_> {
-    /// How far its views are from agreeing with its frames, in all.
+    /// How far its views are from agreeing with its frames, in all; a frame without a hand explains nothing.
     fn misfit(&self) -> f64 {
-        self.found.iter().flatten().map(|found| found.misfit).sum()
+        let of_nothing = misfit::of_views(&[], self.take.cameras.len());
+        let of_frame =
+            |found: &Option<Found>| found.as_ref().map_or(of_nothing, Found::misfit_of_all_views);
+        self.found.iter().map(of_frame).sum()
     }
 }
 
