@@ -51,13 +51,16 @@ fn one_camera_says_how_little_it_knows_of_the_distance() {
     let frames: Vec<TakeFrame> = frames.iter().map(of_top).collect();
     let fit = fit_take(&cameras[1..2], &frames, &TakeSettings::default(), &NoProgress);
     let fit = fit.expect("a fit");
+    let mut shares = Vec::new();
     for (fit, truth) in fit.frames.iter().zip(&joints) {
         let (error, std) = (mean_error(&fit.joints, truth), fit.joint_std[9]);
         let distance = truth[9].distance(cameras[1].centre());
-        // Hands differ in size by some 13 %, and the one that it is taken for is 6 % shorter.
-        assert!(error < 0.2 * distance, "{error:.0} mm of {distance:.0} mm");
         assert!((0.08..0.5).contains(&(std / distance)), "{std:.0} mm of {distance:.0} mm");
+        assert!(error < 3.0 * std, "{error:.0} mm, {std:.0} mm were said");
+        shares.push(error / distance);
     }
+    // Hands differ in size by some 13 %, and the one that it is taken for is 6 % shorter.
+    assert!(shares.iter().sum::<f64>() / 6.0 < 0.15, "{shares:.2?}");
 }
 
 #[test]
