@@ -33,9 +33,10 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let first = range(&arguments.take, arguments)?;
     let second = arguments.second.as_deref().map(|path| range(path, arguments)).transpose()?;
+    let names = names(&arguments.take, arguments.second.as_deref());
     let table = range_table(
-        NamedRange { name: &first.0, range: &first.1 },
-        second.as_ref().map(|(name, range)| NamedRange { name, range }),
+        NamedRange { name: &names[0], range: &first },
+        second.as_ref().map(|range| NamedRange { name: &names[1], range }),
     );
     let json = to_json(&table);
     let Some(out) = &arguments.out else {
@@ -51,11 +52,34 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     arguments.form.say_json(&output, &json)
 }
 
-fn range(path: &Path, arguments: &Arguments) -> Result<(String, RangeOfMotion)> {
+/// What two takes are called: by their files' names, or by all of their paths where these are the same.
+fn names(first: &Path, second: Option<&Path>) -> [String; 2] {
+    let names = [Some(first), second].map(|path| path.map(take_file::name).unwrap_or_default());
+    if names[0] != names[1] {
+        return names;
+    }
+    [Some(first), second].map(|path| path.map(|own| own.display().to_string()).unwrap_or_default())
+}
+
+fn range(path: &Path, arguments: &Arguments) -> Result<RangeOfMotion> {
     let take = take_file::read(path)?;
     let choice = if arguments.all_frames { FrameChoice::All } else { FrameChoice::Trusted };
-    let range = RangeOfMotion::of(&take, choice).with_context(|| {
+    RangeOfMotion::of(&take, choice).with_context(|| {
         format!("{}: no frame can be trusted (--all-frames counts doubted ones)", path.display())
-    })?;
-    Ok((take_file::name(path), range))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn takes_of_one_name_are_told_apart_by_their_folders() {
+        let names = |first, second| super::names(Path::new(first), Some(Path::new(second)));
+        assert_eq!(names("before.csv", "after.csv"), ["before", "after"]);
+        assert_eq!(
+            names("before/take.csv", "after/take.csv"),
+            ["before/take.csv", "after/take.csv"]
+        );
+    }
 }
