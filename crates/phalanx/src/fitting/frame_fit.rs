@@ -78,7 +78,8 @@ pub(super) struct Found {
     pub(super) crops: Vec<Option<HandCrop>>,
     /// What a detector saw, camera by camera.
     pub(super) points: Vec<Option<CameraPoints>>,
-    /// The views that disagree with the others and are left out: the crops, then the points.
+    /// The views that disagree with the others, in this frame or in the whole take, and are left out: the crops, then the
+    /// points.
     pub(super) left_out: Vec<bool>,
     /// How far the views together are from agreeing with it.
     pub(super) misfit: f64,
@@ -211,7 +212,7 @@ impl FrameFitter<'_> {
             let misfit = misfit::of_fit(&refined, views);
             if best.as_ref().is_none_or(|best| misfit < best.misfit) {
                 let points = sight.points.clone();
-                let left_out = vec![false; crops.len() + points.len()];
+                let left_out = self.weights.left_out(points.len());
                 best = Some(Found { rest, refined, crops, points, left_out, misfit });
             }
             // A guess that views agree with needs no other beside it.
@@ -225,7 +226,7 @@ impl FrameFitter<'_> {
     fn screened(&self, sight: &Sight, guess: Guess) -> Result<Option<Screening>> {
         let Guess { rest, starts } = guess;
         let crops = sight.crops(self.ball(&rest));
-        let left_out = vec![false; crops.len() + sight.points.len()];
+        let left_out = self.weights.left_out(sight.points.len());
         let evidence = self.seen(&crops, &sight.points, &left_out, &rest);
         if Evidence::from(&evidence).is_empty() {
             return Ok(None);

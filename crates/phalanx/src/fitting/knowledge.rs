@@ -39,6 +39,7 @@ impl ViewKnowledge {
         let weights = ViewWeights {
             borders: borders_weights.iter().map(|own| own.or(of_best).unwrap_or(1.0)).collect(),
             points: points_weights.iter().map(|own| own.unwrap_or(PointWeight::UNKNOWN)).collect(),
+            ..fitter.weights.clone()
         };
         let shares = borders.iter().flatten().map(|own| own.persistent);
         let shares: Vec<f64> =

@@ -14,7 +14,10 @@ const CONTRADICTION: f64 = 2.0 * DISAGREEMENT;
 /// 5 %), of wrong ones by .74 at most (95 %), and real borders are worse than drawn ones.
 const LEAST_OVERLAP: f64 = 0.7;
 
-/// How far a view is from agreeing with a pose; beyond 1 it contradicts it.
+/// How far a view is from agreeing where it begins to count less.
+pub(super) const BEGINS: f64 = DISAGREEMENT / CONTRADICTION;
+
+/// How far a view is from agreeing with a pose; beyond 1 it contradicts it in any take.
 pub(super) fn of_view(agreement: &Agreement) -> f64 {
     let Agreement { iou, unexplained } = agreement;
     (unexplained / CONTRADICTION).max((1.0 - iou) / (1.0 - LEAST_OVERLAP))
@@ -23,7 +26,7 @@ pub(super) fn of_view(agreement: &Agreement) -> f64 {
 /// How far `views` views together are from agreeing with a pose, by what each that shows any of the hand
 /// says. Of enough views to tell, each counts less the less it agrees.
 pub(super) fn of_views(seen: &[f64], views: usize) -> f64 {
-    let limit = if views > 2 { DISAGREEMENT / CONTRADICTION } else { f64::INFINITY };
+    let limit = if views > 2 { BEGINS } else { f64::INFINITY };
     let robust = |misfit: f64| misfit / (1.0 + misfit / limit);
     let of_seen: f64 = seen.iter().map(|&misfit| robust(misfit)).sum();
     // One without a border explains nothing.
@@ -48,7 +51,7 @@ pub(super) fn of_fit(fit: &PoseFit, views: usize) -> f64 {
     of_views(&each(fit).collect::<Vec<_>>(), views)
 }
 
-/// Whether no view contradicts a fit to it.
+/// Whether no view contradicts a fit to it in any take.
 pub(super) fn agrees(fit: &PoseFit) -> bool {
     each(fit).all(|misfit| misfit <= 1.0)
 }

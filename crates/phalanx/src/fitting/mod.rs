@@ -26,6 +26,7 @@ mod tracking;
 mod views;
 mod volume;
 mod weights;
+mod wrong_view;
 
 pub use consensus::VolumeEstimate;
 pub use report::{FitDoubt, FrameFit, LandmarkFit, Missing, ViewFit};

@@ -134,7 +134,11 @@ pub(super) fn recovered(
         let other = fitter.search_near(&Sight::of(cameras, &frames[k])?, &places)?;
         let near: Vec<&Found> = near.iter().map(|(_, found)| *found).collect();
         let other = match &other {
-            Some(other) => fitter.again(other, &other.left_out, &near, Postures::All)?,
+            Some(other) => {
+                // Misfits of other views are not alike.
+                let left_out = found[k].as_ref().map_or(&other.left_out, |own| &own.left_out);
+                fitter.again(other, left_out, &near, Postures::All)?
+            }
             None => None,
         };
         progress.step();

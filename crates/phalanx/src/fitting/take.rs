@@ -20,6 +20,7 @@ use super::starts;
 use super::take_frame::TakeFrame;
 use super::views;
 use super::weights::ViewWeights;
+use super::wrong_view;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 
@@ -208,20 +209,52 @@ impl<'a> Take<'a> {
         believing: &'a PoseFitSettings,
         progress: &dyn Progress,
     ) -> Result<Around<'a>> {
-        if proportions == Proportions::FromTake {
-            self.find_size(frames, &middle, progress)?;
+        let thought = self.clone();
+        let mut found = self.found_near(frames, &middle, proportions, progress)?;
+        while let Some(view) =
+            wrong_view::of_take(&self.fitter(Weights::Relative), &found, progress)?
+        {
+            let mut weights = self.weights.clone();
+            weights.wrong[view] = true;
+            // A wrong view may have told another size.
+            self = Take { weights, ..thought.clone() };
+            found = self.found_near(frames, &middle, proportions, progress)?;
         }
+        let found = self.agreeing(&found, progress)?;
         let fitter = self.fitter(Weights::Relative);
-        let found = passes::first(self.cameras, frames, &fitter, &[middle], progress)?;
-        let found = passes::again(&fitter, &found, progress)?;
-        let found = passes::agreeing(&fitter, &found, progress)?;
         let found = passes::recovered(self.cameras, frames, &fitter, &found, progress)?;
         self.refinement = believing;
         self.weigh(&found)?;
         let found = self.in_rounds(found, proportions, &middle, progress)?;
-        let found = passes::agreeing(&self.fitter(Weights::Relative), &found, progress)?;
+        let found = self.agreeing(&found, progress)?;
         self.weigh(&found)?;
         Ok(Around { take: self, middle, found })
+    }
+
+    /// All frames, looked for near a place with a hand of about that person's size.
+    fn found_near(
+        &mut self,
+        frames: &[TakeFrame],
+        place: &DAffine3,
+        proportions: Proportions,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Option<Found>>> {
+        if proportions == Proportions::FromTake {
+            self.find_size(frames, place, progress)?;
+        }
+        let fitter = self.fitter(Weights::Relative);
+        let found = passes::first(self.cameras, frames, &fitter, &[*place], progress)?;
+        passes::again(&fitter, &found, progress)
+    }
+
+    /// All frames without the views that contradict the others.
+    fn agreeing(
+        &mut self,
+        found: &[Option<Found>],
+        progress: &dyn Progress,
+    ) -> Result<Vec<Option<Found>>> {
+        self.weights.limits = views::limits(&self.fitter(Weights::Relative), found)?;
+        passes::agreeing(&self.fitter(Weights::Relative), found, progress)
     }
 
     /// Finds out roughly how large the hand is, near a place.

@@ -1,14 +1,19 @@
-//! How much what each view shows counts.
+//! What is known of each view: how much what it shows counts, and when it contradicts the others.
 
 use serde::{Deserialize, Serialize};
 
-/// How much borders and points count, camera by camera.
+/// What a take tells of its cameras, one by one.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct ViewWeights {
     /// How much a place of each border counts beside one that is known independently to the fit's noise.
     pub(super) borders: Vec<f64>,
     /// How well each camera's landmarks are known.
     pub(super) points: Vec<PointWeight>,
+    /// Which cameras' masks are of something else than the hand that the others show, in the whole take.
+    pub(super) wrong: Vec<bool>,
+    /// How far each view of a frame may be from agreeing with its pose, and does not contradict it: the masks, then the
+    /// landmarks.
+    pub(super) limits: Vec<f64>,
 }
 
 /// How well the landmarks of a camera are known.
@@ -30,7 +35,19 @@ impl PointWeight {
 impl ViewWeights {
     /// Of so many cameras of which nothing is known.
     pub(super) fn unknown(cameras: usize) -> Self {
-        Self { borders: vec![1.0; cameras], points: vec![PointWeight::UNKNOWN; cameras] }
+        Self {
+            borders: vec![1.0; cameras],
+            points: vec![PointWeight::UNKNOWN; cameras],
+            wrong: vec![false; cameras],
+            limits: vec![1.0; 2 * cameras],
+        }
+    }
+
+    /// Which views no frame is fitted to: of the masks, then of so many cameras' landmarks.
+    pub(super) fn left_out(&self, points: usize) -> Vec<bool> {
+        let mut left_out = self.wrong.clone();
+        left_out.resize(left_out.len() + points, false);
+        left_out
     }
 
     /// How much what counts most counts: a place of the best view's border; of landmarks alone, the best
@@ -48,6 +65,8 @@ impl ViewWeights {
         Self {
             borders: self.borders.iter().map(|weight| weight / most).collect(),
             points: self.points.iter().map(point).collect(),
+            wrong: self.wrong.clone(),
+            limits: self.limits.clone(),
         }
     }
 }

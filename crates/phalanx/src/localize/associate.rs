@@ -57,7 +57,8 @@ const SLANTS_DEG: [f64; 5] = [0.0, 30.0, -30.0, 60.0, -60.0];
 
 /// The placements that the candidates of all views allow, the likeliest first, at most `most`. Each
 /// pair of candidates of two views, and each candidate alone, says where the hand may be; the other
-/// views then agree or are left out. Where views tell no more of an arm's direction than how it looks
+/// views then agree or are left out. Where only one view shows anything, what does not look like a hand in it is no
+/// placement unless nothing does. Where views tell no more of an arm's direction than how it looks
 /// in one picture, placements differ in how far it points away from the camera.
 pub fn associate(views: &[Detections], most: usize) -> Vec<Placement> {
     let seen: Vec<Seen<'_>> = views.iter().map(Seen::of).collect();
@@ -69,6 +70,11 @@ pub fn associate(views: &[Detections], most: usize) -> Vec<Placement> {
                 found.extend(of_pair(one, other, &seen));
             }
         }
+    }
+    // The only view that shows anything cannot bear out what does not look like a hand in it.
+    let showing = seen.iter().filter(|view| !view.candidates.is_empty()).count();
+    if showing == 1 && found.iter().any(|placement| placement.views() > 0) {
+        found.retain(|placement| placement.views() > 0);
     }
     found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let mut distinct: Vec<Placement> = Vec::new();

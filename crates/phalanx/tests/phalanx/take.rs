@@ -1,6 +1,6 @@
 //! Whole takes of drawn hands, from masks and cameras alone.
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 use phalanx::{
     Delay, Error, FitDoubt, Missing, NoProgress, Proportions, TakeFrame, TakeSettings,
     TrackSettings, TrackedFrame, Tracker, VolumeEstimate, draw_mask, estimate_volume, fit_frame,
@@ -64,6 +64,31 @@ fn one_camera_says_how_little_it_knows_of_the_distance() {
 }
 
 #[test]
+fn the_end_of_a_sleeve_is_not_taken_for_a_hand_before_one_camera() {
+    let Drawn { cameras, mut frames, joints } = drawn(6);
+    let camera = &cameras[2];
+    for (frame, joints) in frames.iter_mut().zip(&joints) {
+        // The arm is seen as far as 120 mm behind the wrist.
+        let [wrist, end] = [0.0, 120.0].map(|behind| joints[0] - DVec3::Z * behind);
+        let [wrist, end] = [wrist, end].map(|point| camera.project(point).expect("before it"));
+        let mask = frame.masks.remove(2).expect("drawn");
+        let is_seen = |x: u32, y: u32| {
+            let pixel = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+            (pixel - end).dot(wrist - end) > 0.0
+        };
+        let seen = |x, y| mask.is_hand(x, y) && is_seen(x, y);
+        frame.masks = vec![Some(Mask::from_fn(320, 240, seen))];
+    }
+    let settings = TakeSettings::default();
+    let fit = fit_take(&cameras[2..], &frames, &settings, &NoProgress).expect("a fit");
+    for (fit, truth) in fit.frames.iter().zip(&joints) {
+        let ahead = (fit.joints[9] - fit.joints[0]).normalize();
+        let along = ahead.dot((truth[9] - truth[0]).normalize());
+        assert!(along > 0.5, "{along:.2}");
+    }
+}
+
+#[test]
 fn a_view_that_shows_something_else_is_named_and_does_no_harm() {
     let Drawn { cameras, mut frames, joints } = drawn(5);
     for frame in &mut frames {
@@ -88,6 +113,23 @@ fn a_view_that_shows_something_else_is_named_and_does_no_harm() {
     let errors: Vec<f64> =
         fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
     assert!(errors.iter().sum::<f64>() / 5.0 < 12.0, "{errors:.1?}");
+}
+
+#[test]
+fn a_camera_that_shows_another_moment_is_named_and_does_no_harm() {
+    let Drawn { cameras, mut frames, joints } = drawn(8);
+    let shown: Vec<Option<Mask>> = frames.iter().map(|frame| frame.masks[0].clone()).collect();
+    for (k, frame) in frames.iter_mut().enumerate() {
+        frame.masks[0] = shown[(k + 4) % 8].clone();
+    }
+    let fit = fit_take(&cameras, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
+    let named = |view: usize| {
+        fit.frames.iter().filter(|fit| fit.views[view].missing == Some(Missing::Disagrees)).count()
+    };
+    let errors: Vec<f64> =
+        fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
+    assert_eq!([0, 1, 2].map(named), [8, 0, 0], "{errors:.1?}");
+    assert!(errors.iter().sum::<f64>() / 8.0 < 6.0, "{errors:.1?}");
 }
 
 /// The same as it is seen in a mirror: x turns round in the world and in every picture.

@@ -74,7 +74,7 @@ pub(super) fn follow(
     let (hand, rest) = (fitter.hand, predicted.rest);
     let crops = seen.crops(fitter.ball(&rest));
     let points = seen.points.clone();
-    let left_out = vec![false; crops.len() + points.len()];
+    let left_out = fitter.weights.left_out(points.len());
     let evidence = fitter.seen(&crops, &points, &left_out, &rest);
     if Evidence::from(&evidence).is_empty() {
         return Ok(None);

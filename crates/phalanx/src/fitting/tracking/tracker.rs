@@ -292,9 +292,10 @@ impl Tracker {
         let Followed { found, motion, offset, before, after } = followed;
         self.noise.learn(&offset, &before, &after);
         self.recent.push(found.misfit);
+        let used = found.left_out.clone();
         let found = self.agreeing(found)?;
         // Without a view the pose is another.
-        let motion = if found.left_out.contains(&true) { self.starting(&found) } else { motion };
+        let motion = if found.left_out == used { motion } else { self.starting(&found) };
         Ok(Last { time, found: Some(found), motion: Some(motion) })
     }
 
