@@ -148,8 +148,39 @@ fn text(evaluation: &Evaluation, lag: Option<Lag>) -> String {
         ),
         None => writeln!(text, "no lag can be told"),
     };
-    text + &table(&["bias"], &numbers(evaluation))
-        + &table(&["bias x", "y", "z"], &joints(evaluation))
+    let (numbers, joints) = (numbers(evaluation), joints(evaluation));
+    text + &table(&["bias"], &numbers)
+        + &diagram("angles and places", &numbers)
+        + &table(&["bias x", "y", "z"], &joints)
+        + &diagram("joints", &joints)
+}
+
+/// How many characters of a diagram are 100 %.
+const WIDTH: f64 = 50.0;
+
+/// A reliability diagram of all together: a bar as long as what was found, and a mark where it was promised to end.
+fn diagram(all: &str, compared: &[Compared<'_>]) -> String {
+    let with_deviations = compared.iter().filter_map(|own| Some((own.found?, own.count as f64)));
+    let with_deviations: Vec<(&[f64], f64)> = with_deviations.collect();
+    if with_deviations.is_empty() {
+        return String::new();
+    }
+    let count: f64 = with_deviations.iter().map(|(_, count)| count).sum();
+    let line = |level: usize| {
+        let promised = LEVELS[level].0;
+        let within = with_deviations.iter().map(|(found, count)| found[level] * count);
+        let found = within.sum::<f64>() / count;
+        let [mark, end] = [promised, found].map(|share| (WIDTH * share).round() as usize);
+        let at = |place: usize| match place {
+            _ if place == mark => '|',
+            _ if place < end => '=',
+            _ => ' ',
+        };
+        let bar: String = (0..=WIDTH as usize).map(at).collect();
+        format!("{:>5.0}% {bar} {:>5.0}%\n", 100.0 * promised, 100.0 * found)
+    };
+    let lines: String = (0..LEVELS.len()).map(line).collect();
+    format!("\nreliability of all {all}: | promised, = found\n{lines}")
 }
 
 /// A line for each, unless there is none.
@@ -175,4 +206,29 @@ fn json(evaluation: &Evaluation, lag: Option<Lag>) -> Value {
         "lag": lag.map(|lag| json!({ "seconds": lag.seconds, "correlation": lag.correlation })),
         "compared": compared.map(|compared| compared.json()).collect::<Vec<_>>(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(found: &[f64]) -> Vec<String> {
+        let (bias, found) = (vec![0.0], Some(found));
+        let own = Compared { name: "a", unit: "deg", bias, mean: 0.0, rms: 0.0, count: 10, found };
+        diagram("angles", &[own]).lines().skip(2).map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn a_bar_ends_at_its_mark_where_deviations_hold() {
+        let lines = lines(&LEVELS.map(|(level, _)| level));
+        assert_eq!(lines.len(), LEVELS.len());
+        assert!(lines.iter().all(|line| line.contains("=| ")), "{lines:?}");
+    }
+
+    #[test]
+    fn a_bar_is_short_where_deviations_are_too_small_and_there_is_none_without_them() {
+        let short = lines(&[0.0; LEVELS.len()]);
+        assert!(short.iter().all(|line| line.contains('|') && !line.contains('=')), "{short:?}");
+        assert_eq!(diagram("angles", &[]), "");
+    }
 }

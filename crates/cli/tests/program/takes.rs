@@ -233,6 +233,7 @@ fn a_take_agrees_with_itself() {
         let text = folder.printed(&["evaluate", "take.csv", "--reference", reference]);
         assert!(text.contains("30 frames compared, 0 without"), "{text}");
         assert!(text.contains("0.0 ms late"), "{text}");
+        assert!(text.contains("reliability of all joints"), "{text}");
         let arguments = ["evaluate", "take.csv", "--reference", reference, "--json"];
         let json: serde_json::Value = serde_json::from_str(&folder.printed(&arguments)).unwrap();
         assert!(json["compared"].as_array().unwrap().len() >= 21);
