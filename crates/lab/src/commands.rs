@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::Subcommand;
 
-use crate::bench::{flat_memory, peers, performance};
+use crate::bench::{cost, flat_memory, peers, performance};
 use crate::data::fixtures;
 use crate::eval::{
     ablation, doubts, global_pose, held_out, hypotheses, presets, reliability, selection, subsets,
@@ -77,6 +77,8 @@ pub enum Command {
     BenchPeers(peers::Arguments),
     /// Time every stage and write docs/results/performance.md.
     Performance(performance::Arguments),
+    /// Measure what scenes and recordings cost, and what workers save: docs/results/cost.md.
+    Cost(cost::Arguments),
     /// Measure how much memory tracking takes, the longer a recording is.
     FlatMemory(flat_memory::Arguments),
 }
@@ -113,6 +115,7 @@ impl Command {
             Self::Pictures(arguments) => pictures::run(arguments)?,
             Self::BenchPeers(arguments) => peers::run(arguments)?,
             Self::Performance(arguments) => performance::run(arguments)?,
+            Self::Cost(arguments) => cost::run(arguments)?,
             Self::FlatMemory(arguments) => return flat_memory::run(arguments),
         }
         Ok(ExitCode::SUCCESS)

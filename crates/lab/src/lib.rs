@@ -2,6 +2,7 @@
 
 mod baselines;
 mod bench;
+mod child;
 mod clock;
 pub mod commands;
 mod context;

@@ -210,7 +210,7 @@ fn body(command: &str, medians: &Medians, scale: &str) -> Result<String> {
          ## Training on many samples\n\n\
          `cargo xtask train --data-set random --augment --samples N`, three views, all cores, each in a\n\
          process of its own. Codebooks from 1,000 samples and 2,000 kernel centres are a fixed cost.\n\n{}\n\
-         ## ExtraFeatures others\n\n\
+         ## Beside others\n\n\
          The figures of others come from other runs, and the paper's from another computer: they\n\
          are for orientation.\n\n{}",
         processor(),
@@ -269,15 +269,20 @@ fn duration(nanoseconds: f64) -> String {
     format!("{value:.decimals$} {unit}")
 }
 
-/// The processor's name, where the system tells, and its number of cores.
+/// The processor's name and its number of cores.
 fn processor() -> String {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    format!("{}, {cores} cores", processor_name())
+}
+
+/// The processor's name, where the system tells.
+pub(crate) fn processor_name() -> String {
     let information = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = information
+    information
         .lines()
         .find_map(|line| line.strip_prefix("model name")?.split_once(':'))
-        .map_or("a processor without a name", |(_, name)| name.trim());
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    format!("{name}, {cores} cores")
+        .map_or("a processor without a name", |(_, name)| name.trim())
+        .to_owned()
 }
 
 #[cfg(test)]

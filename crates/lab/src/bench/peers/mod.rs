@@ -25,7 +25,7 @@ use row::Row;
 const PAGE: Page<'_> = Page {
     file: "peers.md",
     command: "cargo xtask bench-peers --peers DIR",
-    title: "ExtraFeatures others",
+    title: "Beside others",
 };
 
 #[derive(Args)]
