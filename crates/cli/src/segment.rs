@@ -85,7 +85,9 @@ impl Pictures {
         if let Self::Photographs(segmentation) = self {
             let segmenter = segmentation.of_camera(camera)?;
             if !matches!(segmenter, Segmenter::Background(_)) {
-                return Ok(Prepared::Photograph(photograph(picture)?, segmenter));
+                let named = || format!("camera '{camera}'");
+                let photograph = photograph(picture).with_context(named)?;
+                return Ok(Prepared::Photograph(photograph, segmenter));
             }
         }
         self.mask(camera, picture).map(Prepared::Mask)

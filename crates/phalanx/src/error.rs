@@ -31,7 +31,10 @@ pub enum Error {
         camera: String,
     },
     /// No camera sees anything like a hand, in any frame.
-    #[error("no camera sees anything like a hand; are the masks of a hand, over 127?")]
+    #[error(
+        "no camera sees anything like a hand; in masks it is brighter than 127, in photographs it must have the colour \
+         that it is looked for by"
+    )]
     NoHand,
     /// A frame that does not come after the one before it.
     #[error(

@@ -1,7 +1,7 @@
 //! What the cameras see, against the calibration.
 
 use anyhow::Result;
-use phalanx::{Missing, NoProgress, TakeFit, TakeSettings, fit_take};
+use phalanx::{FitDoubt, Missing, NoProgress, TakeFit, TakeSettings, fit_take};
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::Side;
 
@@ -73,6 +73,16 @@ fn agreement(camera: &Camera, view: usize, fit: &TakeFit) -> Finding {
     let overlaps: Vec<f64> = views().filter_map(|view| view.overlap).collect();
     let mean = overlaps.iter().sum::<f64>() / overlaps.len().max(1) as f64;
     let text = format!("a fitted hand overlaps what it sees by {mean:.2} on average");
+    let is_doubt = |doubt: &&FitDoubt| matches!(doubt, FitDoubt::PoorFit { view: of, .. } | FitDoubt::CutOff { view: of } if *of == view);
+    let doubts = fit.frames.iter().filter_map(|frame| frame.doubts.iter().find(is_doubt));
+    let doubted = doubts.count();
+    if 2 * doubted > moments {
+        let text = format!(
+            "{text}, which is not as of a hand, or of one that is cut off, at {doubted} of {moments} moments: look at \
+             the light, or give masks"
+        );
+        return Finding::doubtful(what, text);
+    }
     if contradicts + absent == 0 {
         return Finding::good(what, text);
     }

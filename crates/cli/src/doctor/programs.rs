@@ -8,7 +8,13 @@ use super::finding::Finding;
 
 pub(super) fn findings() -> Vec<Finding> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    vec![Finding::good("program", format!("{}, {threads} threads", Maker::here())), ffmpeg()]
+    vec![
+        Finding::good(
+            "program",
+            format!("{}, {threads} thread{}", Maker::here(), if threads == 1 { "" } else { "s" }),
+        ),
+        ffmpeg(),
+    ]
 }
 
 fn ffmpeg() -> Finding {

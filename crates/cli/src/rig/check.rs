@@ -8,9 +8,13 @@ use clap::Args;
 use phalanx_camera::{Rig, ViewAngle, ViewScale};
 use serde::Serialize;
 
+use super::locate;
 use super::simulation::{Angle, Simulation, simulate};
 use crate::form::Form;
 use crate::progress::Bar;
+use crate::recording::source::{RecordingArguments, Source};
+use crate::segment::SegmentArguments;
+use crate::side::SideName;
 use phalanx_cli::reading;
 
 /// Two views nearer than this see a hand alike, degrees: a triangulated point is then five times less
@@ -22,6 +26,15 @@ pub(crate) struct Arguments {
     /// The rig.
     #[arg(value_name = "RIG.toml")]
     rig: PathBuf,
+    /// Recordings of the hand where it works, as `phalanx track` takes them: the hand is looked for in some of their
+    /// moments. Without them it is taken to be in the middle of the rig's working volume.
+    #[arg(value_name = "RECORDING")]
+    recordings: Vec<String>,
+    #[command(flatten)]
+    segment: SegmentArguments,
+    /// Which hand the recordings show.
+    #[arg(long, value_enum, default_value_t)]
+    side: SideName,
     /// Say what deviation and error to expect of each angle: draw a hand that moves in the working volume, and fit
     /// it as this rig sees it. Real pictures have ragged outlines, so take it for the best that can be.
     #[arg(long)]
@@ -68,7 +81,7 @@ pub(crate) fn read(path: &Path) -> Result<Rig> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let rig = read(&arguments.rig)?;
+    let rig = arguments.rig()?;
     let scales = rig.view_scales().with_context(|| arguments.rig.display().to_string())?;
     let report = Report {
         views: scales.into_iter().map(View::of).collect(),
@@ -84,6 +97,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         );
     }
     arguments.form.print(&report, || report.table())
+}
+
+impl Arguments {
+    /// The rig, with its working volume where the recordings show the hand, if there are any.
+    fn rig(&self) -> Result<Rig> {
+        let rig = read(&self.rig)?;
+        if self.recordings.is_empty() {
+            return Ok(rig);
+        }
+        let recording = RecordingArguments {
+            recordings: self.recordings.clone(),
+            landmarks: Vec::new(),
+            segment: self.segment.clone(),
+            timestamps: None,
+        };
+        let source = Source::new(&rig, &recording, self.side.into())?;
+        Ok(Rig { volume: locate::volume(&source, self.side.into())?.volume, ..rig })
+    }
 }
 
 /// Whether two cameras look from nearly the same side.
