@@ -14,6 +14,7 @@ mod solver;
 
 pub use bundle::{BundleAdjustment, BundleFrame, BundleResult};
 pub use error::{Error, Result};
+pub use geometry::drawn_term::DrawnTerm;
 pub use observation::evidence::Evidence;
 pub use observation::landmarks::LandmarkObservation;
 pub use observation::silhouette::SilhouetteObservation;

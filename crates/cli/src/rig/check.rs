@@ -8,8 +8,8 @@ use clap::Args;
 use phalanx_camera::{Rig, ViewAngle, ViewScale};
 use serde::Serialize;
 
-use super::locate;
 use super::simulation::{Angle, Simulation, simulate};
+use super::volume;
 use crate::form::Form;
 use crate::progress::Bar;
 use crate::recording::source::{RecordingArguments, Source};
@@ -113,7 +113,7 @@ impl Arguments {
             timestamps: None,
         };
         let source = Source::new(&rig, &recording, self.side.into())?;
-        Ok(Rig { volume: locate::volume(&source, self.side.into())?.volume, ..rig })
+        Ok(Rig { volume: volume::seen(&source, self.side.into())?.volume, ..rig })
     }
 }
 

@@ -2,22 +2,17 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Result, ensure};
+use anyhow::Result;
 use clap::Args;
-use phalanx::{VolumeEstimate, estimate_volume};
+use phalanx::VolumeEstimate;
 use phalanx_camera::Rig;
 use phalanx_cli::files::Output;
-use phalanx_hand::{HandShape, Side};
 use serde_json::json;
 
-use super::check;
+use super::{check, volume};
 use crate::form::Form;
-use crate::progress::Bar;
 use crate::recording::source::{RecordingArguments, Source};
 use crate::side::SideName;
-
-/// Moments that tell where a hand works.
-const MOMENTS: usize = 24;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -42,7 +37,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let segment = arguments.recording.segment.path();
     let inputs: Vec<&PathBuf> = source.inputs().chain([&arguments.rig]).chain(segment).collect();
     let out = Output::new(&arguments.out, &inputs)?;
-    let VolumeEstimate { volume, turns } = volume(&source, arguments.side.into())?;
+    let VolumeEstimate { volume, turns } = volume::seen(&source, arguments.side.into())?;
     let rig = Rig { volume, ..rig };
     out.write(rig.to_toml()?.as_bytes())?;
     let turns = turns.map(|turn| turn.map(f64::to_degrees));
@@ -60,19 +55,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             center[0], center[1], center[2], x[0], x[1], y[0], y[1], z[0], z[1]
         )
     })
-}
-
-/// Where the hand works in some moments of a recording.
-pub(super) fn volume(source: &Source, side: Side) -> Result<VolumeEstimate> {
-    let mut failures = Vec::new();
-    let frames = source.reader()?.read_some(MOMENTS, &mut failures);
-    if let Some(first) = failures.first() {
-        let said = format!("{} pictures cannot be used: {first}", failures.len());
-        ensure!(failures.len() < frames.len(), said);
-        eprintln!("phalanx: {said}");
-    }
-    let hand = HandShape { side, ..HandShape::adult() };
-    Ok(estimate_volume(&source.cameras, &frames, &hand, &Bar::new())?)
 }
 
 /// A whole number, without the sign of a zero.

@@ -1,14 +1,22 @@
-//! Where the hand works, in a calibration's world.
+//! Where the hand works, in a calibration's world: said, guessed or seen.
 
 use std::str::FromStr;
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use glam::DVec3;
+use phalanx::{VolumeEstimate, estimate_volume};
 use phalanx_camera::{Camera, Volume};
+use phalanx_hand::{HandShape, Side};
+
+use crate::progress::Bar;
+use crate::recording::source::Source;
 
 /// Side of the cube in which the hand works unless it is said, mm.
 const SIDE_MM: f64 = 300.0;
+
+/// Moments of a recording that tell where a hand works.
+const MOMENTS: usize = 24;
 
 /// Where the hand works and how it is held, in the calibration's world.
 #[derive(Args)]
@@ -74,4 +82,17 @@ impl VolumeArguments {
             up: up.unwrap_or(guess.up),
         })
     }
+}
+
+/// Where the hand works in some moments of a recording.
+pub(super) fn seen(source: &Source, side: Side) -> Result<VolumeEstimate> {
+    let mut failures = Vec::new();
+    let frames = source.reader()?.read_some(MOMENTS, &mut failures);
+    if let Some(first) = failures.first() {
+        let said = format!("{} pictures cannot be used: {first}", failures.len());
+        ensure!(failures.len() < frames.len(), said);
+        eprintln!("phalanx: {said}");
+    }
+    let hand = HandShape { side, ..HandShape::adult() };
+    Ok(estimate_volume(&source.cameras, &frames, &hand, &Bar::new())?)
 }

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DQuat, DVec3};
 use phalanx_camera::{Camera, Volume};
 use phalanx_hand::{Dof, HandShape, Pose};
-use phalanx_refine::PoseFitSettings;
+use phalanx_refine::{DrawnTerm, PoseFitSettings};
 use rayon::prelude::*;
 
 use super::frame_fit::{Found, FrameFitter};
@@ -35,12 +35,21 @@ pub struct VolumeEstimate {
 /// How frames are fitted while it is not known which views agree: hand and cameras are taken as they
 /// are, and starts are many.
 pub(super) fn refinement() -> PoseFitSettings {
-    PoseFitSettings { disagreement: Some(DISAGREEMENT), ..believing() }
+    PoseFitSettings { drawn: DrawnTerm::Outline, ..near(1) }
 }
 
-/// How frames are fitted when all views that are left agree.
-pub(super) fn believing() -> PoseFitSettings {
-    let mut settings = PoseFitSettings { max_restarts: 0, ..PoseFitSettings::of_noise(NOISE) };
+/// How frames of so many cameras are fitted again, near where their hands are, while views may still disagree.
+pub(super) fn near(cameras: usize) -> PoseFitSettings {
+    PoseFitSettings { disagreement: Some(DISAGREEMENT), ..believing(cameras) }
+}
+
+/// How frames of so many cameras are fitted when all views that are left agree: by areas between silhouettes. A hand
+/// before one camera can be anywhere along its line of sight: there is always one of about the right area, and nothing
+/// doubts it, so that one camera's outlines are compared.
+pub(super) fn believing(cameras: usize) -> PoseFitSettings {
+    let drawn = if cameras > 1 { DrawnTerm::Area } else { DrawnTerm::Outline };
+    let mut settings =
+        PoseFitSettings { max_restarts: 0, drawn, ..PoseFitSettings::of_noise(NOISE) };
     // Starts were screened, which is the coarsest level.
     settings.levels.remove(0);
     for level in &mut settings.levels {

@@ -95,7 +95,7 @@ pub fn fit_take(
     progress: &dyn Progress,
 ) -> Result<TakeFit> {
     let (prior, refinement) = (starts::pose_prior()?, consensus::refinement());
-    let believing = consensus::believing();
+    let believing = consensus::believing(cameras.len());
     let take = Take::of(cameras, &settings.hand, &prior, &refinement);
     let keys = consensus::key_frames(cameras, frames, &take.fitter(Weights::Relative), progress)?;
     let mut best: Option<Around<'_>> = None;
@@ -133,6 +133,7 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
     let rest = take.volume.volume.rest_frame();
     let sight = Sight::of(cameras, frame)?;
     let found = relative.search_near(&sight, &[rest])?.ok_or(Error::NoHand)?;
+    let relative = FrameFitter { refinement: &consensus::near(cameras.len()), ..relative };
     let found = relative.improved(found)?;
     let found = views::without_disagreeing(&relative, &found)?;
     let fitter = &fitter(weights.clone());

@@ -6,6 +6,7 @@ use phalanx_render::Renderer;
 use phalanx_segmentation::Mask;
 
 use crate::error::{Error, Result};
+use crate::geometry::drawn_term::DrawnTerm;
 use crate::geometry::sphere_hull::{Bound, ClosestApproach, SphereHull};
 use crate::observation::boundary::boundary_edges;
 use crate::observation::silhouette::SilhouetteObservation;
@@ -20,6 +21,17 @@ pub(crate) struct Correspondence {
     pub(crate) primitive: usize,
     /// Where the ray passes it.
     pub(crate) approach: ClosestApproach,
+}
+
+/// A place of the drawn outline that bounds an area between the silhouettes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DrawnPlace {
+    /// The primitive that is drawn there.
+    pub(crate) drawn: Correspondence,
+    /// How far outside the observed silhouette it is, px; negative within.
+    pub(crate) outside: f64,
+    /// How long a piece of the outline it stands for, px: as long as the edge of its pixel is along the outline.
+    pub(crate) length: f64,
 }
 
 /// A drawn boundary that is as close as this, px, to an observed one says nothing that the observed one
@@ -62,6 +74,8 @@ pub(crate) struct ViewMatcher {
     /// The primitive that each observed edge was matched with last: seldom another next time.
     last: Vec<usize>,
     pub(crate) correspondences: Vec<Correspondence>,
+    /// Where the drawn silhouette ends, if areas are looked at.
+    pub(crate) drawn_places: Vec<DrawnPlace>,
 }
 
 impl ViewMatcher {
@@ -78,17 +92,19 @@ impl ViewMatcher {
             edges: Vec::new(),
             last: vec![0; evidence.edges().len()],
             correspondences: Vec::new(),
+            drawn_places: Vec::new(),
         })
     }
 
-    /// Matches primitives, in the world, with the boundary that was seen, both ways: each observed edge
-    /// with the primitive that it is least outside of, and each edge of the drawn silhouette's primitive
-    /// with the observed edge that is nearest to it.
+    /// Matches primitives, in the world, with the boundary that was seen: each observed edge with the primitive that it is
+    /// least outside of; where outlines are compared, also each edge of the drawn silhouette's primitive with the
+    /// observed edge that is nearest to it.
     pub(crate) fn match_boundary(
         &mut self,
         primitives: &[Primitive],
         evidence: &SilhouetteObservation,
         every: usize,
+        drawn: DrawnTerm,
     ) -> Result<()> {
         let camera = evidence.camera();
         self.renderer
@@ -109,6 +125,14 @@ impl ViewMatcher {
             *last = found.primitive;
             self.correspondences.push(found);
         }
+        if drawn == DrawnTerm::Outline {
+            self.match_outline(evidence, every);
+        }
+        Ok(())
+    }
+
+    /// Matches the drawn outline's primitives with the observed edges that are nearest to it.
+    fn match_outline(&mut self, evidence: &SilhouetteObservation, every: usize) {
         for &edge in self.edges.iter().step_by(every) {
             if !evidence.is_known(edge) {
                 continue;
@@ -117,11 +141,7 @@ impl ViewMatcher {
             if evidence.edges()[nearest].distance_squared(edge) < CLOSE * CLOSE {
                 continue;
             }
-            let Some(direction) = camera.intrinsics.to_normalised(edge) else { continue };
-            // What is drawn nearby is likely drawn by the same primitive.
-            let hint = self.last[nearest - nearest % every];
-            let ray = direction.extend(1.0).normalize();
-            let own = closest(&self.seen, ray, None, hint.min(primitives.len() - 1));
+            let Some(own) = self.drawn_at(edge, evidence, every) else { continue };
             if own.approach.normal.truncate().dot(evidence.normals()[nearest]) > 0.0 {
                 continue;
             }
@@ -129,7 +149,37 @@ impl ViewMatcher {
             let approach = self.seen[own.primitive].hull.closest_approach(ray);
             self.correspondences.push(Correspondence::new(ray, own.primitive, approach));
         }
-        Ok(())
+    }
+
+    /// Finds the places of the outline that was drawn last that bound areas between the silhouettes.
+    pub(crate) fn match_areas(&mut self, evidence: &SilhouetteObservation, every: usize) {
+        self.drawn_places.clear();
+        for &edge in self.edges.iter().step_by(every) {
+            let outside = evidence.outside(edge);
+            if outside == 0.0 || !evidence.is_known(edge) {
+                continue;
+            }
+            let Some(drawn) = self.drawn_at(edge, evidence, every) else { continue };
+            let normal = drawn.approach.normal.truncate().normalize_or_zero();
+            // Edges of pixels are along the image's axes.
+            let is_upright = edge.x.fract() == 0.0;
+            let length = if is_upright { normal.x } else { normal.y }.abs();
+            self.drawn_places.push(DrawnPlace { drawn, outside, length });
+        }
+    }
+
+    /// The primitive that is drawn at an edge of the drawn silhouette.
+    fn drawn_at(
+        &self,
+        edge: DVec2,
+        evidence: &SilhouetteObservation,
+        every: usize,
+    ) -> Option<Correspondence> {
+        let direction = evidence.camera().intrinsics.to_normalised(edge)?;
+        // What is drawn nearby is likely drawn by the same primitive.
+        let nearest = evidence.nearest(edge);
+        let hint = self.last[nearest - nearest % every].min(self.seen.len() - 1);
+        Some(closest(&self.seen, direction.extend(1.0).normalize(), None, hint))
     }
 
     /// Draws primitives, in the world, into an image.

@@ -18,6 +18,9 @@ pub(crate) struct SphereSlope {
     pub(crate) radius: f64,
 }
 
+/// How the spheres of a primitive change with the numbers.
+pub(crate) type PrimitiveSlopes = [Vec<SphereSlope>; 3];
+
 /// The size's and the thickness's.
 const COMMON: usize = 2;
 
@@ -70,9 +73,9 @@ impl ShapeParameters {
         pose: &Pose,
         rest: &DAffine3,
         posed: &PosedHand,
-    ) -> Vec<[Vec<SphereSlope>; 3]> {
+    ) -> Vec<PrimitiveSlopes> {
         const STEP: f64 = 1e-4;
-        let mut slopes = vec![<[Vec<SphereSlope>; 3]>::default(); posed.primitives.len()];
+        let mut slopes = vec![PrimitiveSlopes::default(); posed.primitives.len()];
         for number in 0..self.logarithms.len() {
             let mut changed = self.clone();
             changed.logarithms[number] += STEP;

@@ -31,6 +31,8 @@ pub struct SilhouetteObservation {
     normals: Vec<DVec2>,
     /// The nearest edge of every pixel.
     nearest: Vec<u32>,
+    /// How far it is from the pixel's middle, px; 0 where nothing is known.
+    apart: Vec<f32>,
 }
 
 impl SilhouetteObservation {
@@ -70,15 +72,17 @@ impl SilhouetteObservation {
             Some(direction.extend(1.0).normalize())
         };
         let rays = edges.iter().map(ray).collect::<Option<_>>();
+        let nearest = nearest_edges(&edges, expected);
         Ok(Self {
             camera: camera.clone(),
             mask: mask.clone(),
+            apart: distances(&known, &edges, &nearest),
             known,
             grain: 1.0,
             weight: 1.0,
             rays: rays.ok_or_else(|| Error::NoBoundary { camera: name() })?,
             normals: edges.iter().map(|&edge| outwards(mask, edge)).collect(),
-            nearest: nearest_edges(&edges, expected),
+            nearest,
             edges,
         })
     }
@@ -146,6 +150,27 @@ impl SilhouetteObservation {
         -away / away.length_squared()
     }
 
+    /// How far the boundary is off its place, over what it is where pixels were seen at once.
+    pub(crate) fn grain(&self) -> f64 {
+        self.grain
+    }
+
+    /// How far drawn pixels that were not seen, and seen ones that are not drawn, are from the boundary, px; of what is
+    /// known.
+    pub(crate) fn differences<'a>(&'a self, drawn: &'a Mask) -> impl Iterator<Item = f64> + 'a {
+        let pixels = drawn.iter().zip(self.mask.iter()).zip(&self.apart);
+        let differing = pixels.filter(|((drawn, seen), apart)| {
+            Mask::is_hand_level(**drawn) != Mask::is_hand_level(**seen) && **apart > 0.0
+        });
+        differing.map(|(_, apart)| f64::from(*apart))
+    }
+
+    /// How far outside the silhouette a place in the image is, px; negative within.
+    pub(crate) fn outside(&self, place: DVec2) -> f64 {
+        let apart = self.edges[self.nearest(place)].distance(place);
+        if self.mask.is_hand(place.x as u32, place.y as u32) { -apart } else { apart }
+    }
+
     /// Which way the background is from each edge.
     pub(crate) fn normals(&self) -> &[DVec2] {
         &self.normals
@@ -170,4 +195,17 @@ impl SilhouetteObservation {
         }
         f64::from(both) / f64::from(either.max(1))
     }
+}
+
+/// How far each pixel's middle is from the edge that is nearest to it, px; 0 where nothing is known.
+fn distances(known: &Mask, edges: &[DVec2], nearest: &[u32]) -> Vec<f32> {
+    let width = known.width() as usize;
+    let distance = |(pixel, (&edge, &known)): (usize, (&u32, &u8))| {
+        if !Mask::is_hand_level(known) {
+            return 0.0;
+        }
+        let middle = DVec2::new((pixel % width) as f64, (pixel / width) as f64) + 0.5;
+        edges[edge as usize].distance(middle) as f32
+    };
+    nearest.iter().zip(known.iter()).enumerate().map(distance).collect()
 }

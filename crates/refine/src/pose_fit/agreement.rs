@@ -5,6 +5,7 @@ use phalanx_hand::{HandShape, Pose};
 
 use crate::error::Result;
 use crate::geometry::correspondence::ViewMatcher;
+use crate::geometry::drawn_term::DrawnTerm;
 use crate::observation::landmarks::LandmarkObservation;
 use crate::observation::silhouette::SilhouetteObservation;
 use crate::pose_fit::settings::PoseFitSettings;
@@ -35,7 +36,7 @@ impl PoseFitSettings {
     ) -> Result<Agreement> {
         self.check()?;
         let mut view = ViewMatcher::new(evidence, self.noise)?;
-        view.match_boundary(&hand.pose(pose, rest).primitives, evidence, 1)?;
+        view.match_boundary(&hand.pose(pose, rest).primitives, evidence, 1, DrawnTerm::Outline)?;
         let scale = evidence.pixels_per_mm(rest.transform_point3(pose.translation()));
         let distances: Vec<f64> =
             view.correspondences.iter().map(|found| scale * found.approach.distance).collect();
@@ -44,7 +45,7 @@ impl PoseFitSettings {
         let energy: f64 = distances.iter().map(|distance| loss.energy(distance - margin)).sum();
         Ok(Agreement {
             iou: evidence.iou(view.drawn()),
-            unexplained: loss.unexplained(energy, distances.len()),
+            unexplained: loss.unexplained(energy, distances.len(), 0.0),
         })
     }
 

@@ -7,6 +7,7 @@ use phalanx_hand::{HandShape, Pose};
 
 use crate::error::Result;
 use crate::geometry::correspondence::ViewMatcher;
+use crate::geometry::drawn_term::DrawnTerm;
 use crate::observation::silhouette::SilhouetteObservation;
 
 /// How far a view's observed boundary is from the boundary of a posed hand, place by place.
@@ -33,7 +34,7 @@ impl BoundaryResiduals {
     ) -> Result<Self> {
         let mut view = ViewMatcher::new(evidence, FINE)?;
         let posed = hand.pose(pose, rest);
-        view.match_boundary(&posed.primitives, evidence, 1)?;
+        view.match_boundary(&posed.primitives, evidence, 1, DrawnTerm::Outline)?;
         let scale = evidence.pixels_per_mm(rest.transform_point3(pose.translation()));
         let places = evidence.edges().to_vec();
         let seen = &view.correspondences[..places.len()];

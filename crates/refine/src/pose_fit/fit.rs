@@ -5,13 +5,16 @@ use phalanx_hand::{HandShape, Pose};
 
 use crate::error::{Error, Result};
 use crate::geometry::correspondence::ViewMatcher;
+use crate::geometry::drawn_term::DrawnTerm;
 use crate::observation::evidence::Evidence;
+use crate::observation::silhouette::SilhouetteObservation;
+use crate::pose_fit::agreement::Agreement;
 use crate::pose_fit::settings::PoseFitSettings;
 use crate::posture_search::Search;
 use crate::priors::pose::PosePrior;
-use crate::solver::levenberg_marquardt::{
-    ANY_ENERGY, Outcome, State, Stop, ious, levenberg_marquardt,
-};
+use crate::solver::levenberg_marquardt::{ANY_ENERGY, Outcome, State, Stop, levenberg_marquardt};
+use crate::solver::loss::RobustLoss;
+use crate::solver::matched_frame::FramePoint;
 use crate::solver::normal_equations::covariance;
 use crate::solver::problem::{Frame, FreeParameters, Problem};
 
@@ -34,8 +37,8 @@ pub struct PoseFit {
     pub boundary_rms_px: f64,
     /// Whether the hand's shape and the cameras' places were fitted too.
     pub nuisance_fitted: bool,
-    /// The energy: half the robust squared distances of boundaries and landmarks over their noise, and what the
-    /// prior and the joints' ranges say.
+    /// The energy: half the robust squared distances of boundaries and landmarks over their noise, what areas between
+    /// silhouettes cost ([`DrawnTerm`]), and what the prior and the joints' ranges say.
     pub energy: f64,
     /// Whether the last steps won nothing worth having.
     pub converged: bool,
@@ -125,7 +128,7 @@ impl PoseFitSettings {
         best: &Outcome,
         views: &mut [Vec<ViewMatcher>],
     ) -> Result<PoseFit> {
-        let ious = ious(problem, &best.state, views)?.swap_remove(0);
+        let agreements = self.agreements(problem, best, &mut views[0])?;
         let (_, shared_prior) = problem.shared_prior(&best.state.shared);
         let numbers = problem.frames[0].prior.dofs().len();
         Ok(PoseFit {
@@ -134,8 +137,8 @@ impl PoseFitSettings {
                 let reason = "leaves directions open that the silhouettes do not tell".to_owned();
                 Error::Precision { reason }
             })?,
-            ious,
-            unexplained: best.unexplained(self.finest()),
+            ious: agreements.iter().map(|view| view.iou).collect(),
+            unexplained: agreements.iter().map(|view| view.unexplained).collect(),
             landmarks_unexplained: best.landmarks_unexplained(),
             boundary_rms_px: best.boundary_rms_px(self.noise),
             energy: best.energy,
@@ -143,6 +146,26 @@ impl PoseFitSettings {
             converged: best.converged,
             steps: best.steps,
         })
+    }
+
+    /// How well each view agrees with what came of one frame: by outlines, however it was fitted, so that one share can be
+    /// compared with another.
+    fn agreements(
+        &self,
+        problem: &Problem<'_>,
+        best: &Outcome,
+        views: &mut [ViewMatcher],
+    ) -> Result<Vec<Agreement>> {
+        let State { frames, shared } = &best.state;
+        let loss = RobustLoss { drawn: DrawnTerm::Outline, ..self.finest() };
+        let at = FramePoint { problem, frame: 0, parameters: &frames[0], shared, loss };
+        let matched = at.matched(views, f64::INFINITY)?.expect("no energy is above infinity");
+        let seen = problem.frames[0].evidence.silhouettes.iter();
+        let of_view =
+            |((seen, view), unexplained): ((&SilhouetteObservation, &ViewMatcher), f64)| {
+                Agreement { iou: seen.iou(view.drawn()), unexplained }
+            };
+        Ok(seen.zip(&*views).zip(matched.unexplained()).map(of_view).collect())
     }
 
     /// Fits the nuisance parameters too: from a fit of the pose alone, and from a start that is nearly as good,

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::correspondence::ViewMatcher;
+use crate::geometry::drawn_term::DrawnTerm;
 use crate::observation::silhouette::SilhouetteObservation;
 use crate::priors::nuisance::NuisanceParameters;
 use crate::solver::levenberg_marquardt::{ANY_ENERGY, Stop};
@@ -25,6 +26,8 @@ pub struct PoseFitSettings {
     /// The share of its boundary from which on a view that a pose leaves unexplained counts less, so that one
     /// that shows something else cannot drag the pose along; `None` where all views are believed.
     pub disagreement: Option<f64>,
+    /// How it counts where the drawn hand's silhouette is not the observed one.
+    pub drawn: DrawnTerm,
     /// What may be otherwise than given; `None` where hand and cameras are certain.
     pub nuisance: Option<NuisanceParameters>,
 }
@@ -59,6 +62,7 @@ impl Default for PoseFitSettings {
             max_restarts: 1,
             restart_threshold: 0.29,
             disagreement: None,
+            drawn: DrawnTerm::Outline,
             nuisance: None,
         }
     }
@@ -104,6 +108,7 @@ impl PoseFitSettings {
             margin: self.margin,
             every: level.every,
             disagreement: self.disagreement.unwrap_or(f64::INFINITY),
+            drawn: self.drawn,
         }
     }
 

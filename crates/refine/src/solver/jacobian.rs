@@ -8,7 +8,7 @@ use phalanx_hand::{Bone, Dof, JOINTS, PosedHand, Primitive, Twist, Twists};
 
 use crate::geometry::correspondence::Correspondence;
 use crate::geometry::self_collision::Penetration;
-use crate::geometry::shape_parameters::SphereSlope;
+use crate::geometry::shape_parameters::PrimitiveSlopes;
 use crate::priors::nuisance::ExtrinsicsCorrection;
 use crate::solver::normal_equations::Row;
 
@@ -207,7 +207,7 @@ impl Rows {
         &mut self,
         penetration: &Penetration,
         posed: &PosedHand,
-        slopes: Option<&[[Vec<SphereSlope>; 3]]>,
+        slopes: Option<&[PrimitiveSlopes]>,
     ) {
         self.clear();
         for ((&primitive, &place), away) in
@@ -242,12 +242,7 @@ impl Rows {
         self.shared.extend(of_numbers.filter(|(_, slope)| *slope != 0.0));
     }
 
-    pub(crate) fn of_shape(
-        &mut self,
-        contact: &Contact<'_>,
-        slopes: &[Vec<SphereSlope>; 3],
-        scale: f64,
-    ) {
+    pub(crate) fn of_shape(&mut self, contact: &Contact<'_>, slopes: &PrimitiveSlopes, scale: f64) {
         for (weight, slopes) in contact.weights.iter().zip(slopes) {
             for slope in slopes.iter().filter(|_| *weight > 0.0) {
                 let moved = contact.normal.dot(slope.center) - scale * slope.radius;

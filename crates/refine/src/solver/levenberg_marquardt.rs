@@ -11,7 +11,7 @@ use crate::priors::gaussian::GaussianPenalty;
 use crate::priors::nuisance::ExtrinsicsCorrection;
 use crate::solver::loss::RobustLoss;
 use crate::solver::matched_frame::{FramePoint, MatchedFrame};
-use crate::solver::normal_equations::{NormalEquations, Step, solve};
+use crate::solver::normal_equations::{BoundaryEnergy, NormalEquations, Step, solve};
 use crate::solver::problem::{FrameParameters, Problem, SharedParameters};
 
 /// Where a fit is.
@@ -48,8 +48,10 @@ impl Outcome {
 
     /// For each view of the first frame, the share of its boundary that is unexplained.
     pub(crate) fn unexplained(&self, loss: RobustLoss) -> Vec<f64> {
-        let boundaries = self.frames[0].boundaries.iter();
-        boundaries.map(|boundary| loss.unexplained(boundary.energy, boundary.count)).collect()
+        let share = |boundary: &BoundaryEnergy| {
+            loss.unexplained(boundary.energy, boundary.count, boundary.areas)
+        };
+        self.frames[0].boundaries.iter().map(share).collect()
     }
 
     /// For each view with landmarks of the first frame, how much of them is unexplained.

@@ -1,5 +1,6 @@
 //! The robust loss of residuals, and the offset of a whole boundary that it is least at.
 
+use crate::geometry::drawn_term::DrawnTerm;
 use crate::priors::gaussian::GaussianPenalty;
 
 /// The robust measure of residuals (Geman and McClure 1987).
@@ -16,6 +17,8 @@ pub(crate) struct RobustLoss {
     /// The share of its boundary from which on a view that is left unexplained counts less; infinite
     /// where all views are believed.
     pub(crate) disagreement: f64,
+    /// How it counts where the drawn silhouette is not the observed one.
+    pub(crate) drawn: DrawnTerm,
 }
 
 /// Landmarks count as much further from their joints than boundaries do from theirs, each over its deviation:
@@ -34,9 +37,28 @@ impl RobustLoss {
         0.5 * s * r / (s + r) * self.every as f64 / (self.noise * self.noise)
     }
 
-    /// The share of a boundary that is unexplained, 0 to 1.
-    pub(crate) fn unexplained(&self, energy: f64, count: usize) -> f64 {
-        energy / (count.max(1) as f64 * self.most())
+    /// What a pixel between the silhouettes costs that is so far from the observed boundary, px: the slope of a place's
+    /// energy up to where that is steepest, and no less beyond (Huber 1964), so that a finger that is drawn where
+    /// nothing was seen costs the more, the larger it is.
+    pub(crate) fn density(&self, apart: f64) -> f64 {
+        let steepest = self.reach / 3.0_f64.sqrt();
+        let apart = apart.min(steepest);
+        self.weight(apart) * apart / self.every as f64
+    }
+
+    /// The weight of a place of a drawn outline that is so far from the observed boundary, px, for the slope of the area
+    /// that it bounds.
+    pub(crate) fn area_weight(&self, apart: f64) -> f64 {
+        /// Nearer than any pixel's middle is to a boundary.
+        const LEAST: f64 = 1e-6;
+        let apart = apart.max(LEAST);
+        self.every as f64 * self.density(apart) / apart
+    }
+
+    /// The share of a boundary that is unexplained, 0 to 1: of so many places, and of what areas between the silhouettes
+    /// add, which are wholly so.
+    pub(crate) fn unexplained(&self, energy: f64, count: usize, areas: f64) -> f64 {
+        (energy + areas) / (count.max(1) as f64 * self.most() + areas)
     }
 
     /// What share of its energy a view of which so much is unexplained adds to that of a pose, and of its
@@ -111,6 +133,7 @@ mod tests {
             margin: 1.0,
             every: 1,
             disagreement: f64::INFINITY,
+            drawn: DrawnTerm::Outline,
         };
         assert_eq!(loss.margin(&[]), 0.0);
         assert_eq!(loss.margin(&[0.0; 9]), 0.0);

@@ -5,6 +5,7 @@ use phalanx_hand::{HandShape, PosedHand};
 
 use crate::error::Result;
 use crate::geometry::correspondence::ViewMatcher;
+use crate::geometry::drawn_term::DrawnTerm;
 use crate::observation::silhouette::SilhouetteObservation;
 use crate::priors::gaussian::GaussianPenalty;
 use crate::priors::nuisance::ExtrinsicsCorrection;
@@ -43,6 +44,12 @@ pub(super) struct MatchedBoundary<'a> {
     pub(super) distances: Vec<f64>,
     /// How far the whole boundary lies outside the hand, px.
     pub(super) margin: f64,
+    /// What the areas between the silhouettes cost, if they are looked at, each place counting once.
+    pub(super) areas: f64,
+    /// How far the boundary is off its place, over what it is where pixels were seen at once.
+    pub(super) grain: f64,
+    /// The share of it that is unexplained.
+    pub(super) unexplained: f64,
     /// How much each place counts in the frame's energy, and in its slope.
     pub(super) weights: [f64; 2],
 }
@@ -81,6 +88,13 @@ impl DistanceAt {
     }
 }
 
+impl MatchedFrame<'_> {
+    /// For each view, the share of its boundary that is unexplained.
+    pub(crate) fn unexplained(&self) -> Vec<f64> {
+        self.boundaries.iter().map(|boundary| boundary.unexplained).collect()
+    }
+}
+
 impl<'a> FramePoint<'a> {
     /// The frame with its views matched; `None` as soon as its energy is surely above `most`.
     pub(crate) fn matched(
@@ -106,22 +120,46 @@ impl<'a> FramePoint<'a> {
         for (v, (view, seen)) in views.iter_mut().zip(evidence.silhouettes).enumerate() {
             let place = Place::new(seen.camera(), self.correction(v), problem.rest.translation);
             let scale = seen.pixels_per_mm(distance_at.point());
-            view.match_boundary(&place.seen(&posed.primitives), seen, loss.every)?;
+            view.match_boundary(&place.seen(&posed.primitives), seen, loss.every, loss.drawn)?;
             let distances =
                 view.correspondences.iter().map(|found| scale * found.approach.distance);
             let distances: Vec<f64> = distances.collect();
             let margin = loss.margin(&distances);
             let energies: f64 = distances.iter().map(|d| loss.energy(d - margin)).sum();
-            let unexplained = loss.unexplained(energies, distances.len());
+            let grain = seen.grain();
+            let areas = match loss.drawn {
+                DrawnTerm::Outline => 0.0,
+                DrawnTerm::Area => {
+                    let differences = seen.differences(view.drawn());
+                    differences.map(|apart| loss.density(apart / grain)).sum::<f64>() / grain
+                }
+            };
+            let unexplained = loss.unexplained(energies, distances.len(), areas);
             let belief = loss.belief(unexplained, evidence.views());
             let weights = belief.map(|share| share * seen.weight());
             // All that is added later only adds to the energy.
-            energy += weights[0] * energies + GaussianPenalty::new(margin, loss.margin).energy;
+            energy +=
+                weights[0] * (energies + areas) + GaussianPenalty::new(margin, loss.margin).energy;
             if energy > most * (1.0 + ROUNDING) {
                 return Ok(None);
             }
             let nearer = distance_at.slope(seen, problem);
-            boundaries.push(MatchedBoundary { place, scale, nearer, distances, margin, weights });
+            boundaries.push(MatchedBoundary {
+                place,
+                scale,
+                nearer,
+                distances,
+                margin,
+                areas,
+                grain,
+                unexplained,
+                weights,
+            });
+        }
+        if loss.drawn == DrawnTerm::Area {
+            for (view, seen) in views.iter_mut().zip(evidence.silhouettes) {
+                view.match_areas(seen, loss.every);
+            }
         }
         Ok(Some(MatchedFrame { at: self, hand, posed, boundaries, prior: known }))
     }

@@ -12,7 +12,7 @@ pub(crate) type Row = Vec<(usize, f64)>;
 
 /// The normal equations of one frame: Hessians column after column, lower triangles of the square
 /// ones.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct NormalEquations {
     own: usize,
     shared: usize,
@@ -36,6 +36,8 @@ pub(crate) struct BoundaryEnergy {
     /// Half the robust squared distances over the noise, each place counting once.
     pub(crate) energy: f64,
     pub(crate) count: usize,
+    /// What areas between the silhouettes add to it.
+    pub(crate) areas: f64,
     /// How much each place counts in the frame's energy, and in its slope.
     pub(crate) weights: [f64; 2],
 }
@@ -108,6 +110,20 @@ impl NormalEquations {
         boundary.count += 1;
         let [of_energy, of_slope] = boundary.weights;
         self.add(residual, of_energy * energy, of_slope * weight, own, shared);
+    }
+
+    /// Adds what areas between the last view's silhouettes cost.
+    pub(crate) fn add_areas(&mut self, areas: f64) {
+        let boundary = self.boundaries.last_mut().expect("a view's boundary was begun");
+        boundary.areas += areas;
+        self.energy += boundary.weights[0] * areas;
+    }
+
+    /// Adds the slope of the areas between the last view's silhouettes at a place of what bounds them. Both rows are in
+    /// ascending order.
+    pub(crate) fn add_area_slope(&mut self, residual: f64, weight: f64, own: &Row, shared: &Row) {
+        let boundary = self.boundaries.last().expect("a view's boundary was begun");
+        self.add(residual, 0.0, boundary.weights[1] * weight, own, shared);
     }
 
     /// Begins the boundary of the next view.

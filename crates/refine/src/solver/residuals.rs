@@ -1,8 +1,10 @@
 //! The residuals of one frame, and its normal equations.
 
 use crate::error::Result;
-use crate::geometry::correspondence::ViewMatcher;
+use crate::geometry::correspondence::{Correspondence, DrawnPlace, ViewMatcher};
+use crate::geometry::drawn_term::DrawnTerm;
 use crate::geometry::self_collision::{Penetration, penetrations};
+use crate::geometry::shape_parameters::PrimitiveSlopes;
 use crate::priors::gaussian::GaussianPenalty;
 use crate::priors::nuisance::ExtrinsicsCorrection;
 use crate::solver::jacobian::{Place, Rows};
@@ -21,44 +23,104 @@ impl FramePoint<'_> {
 
 impl MatchedFrame<'_> {
     /// The energy of the frame and its normal equations; `views` are those that were matched.
-    pub(crate) fn linearised(self, views: &[ViewMatcher]) -> NormalEquations {
-        let Self { at, hand, posed, boundaries, prior: mut system } = self;
-        let FramePoint { problem, frame, parameters, shared, loss } = at;
-        let Frame { evidence, prior } = &problem.frames[frame];
-        let twists = hand.twists(&parameters.pose, problem.rest);
-        let slopes = problem
-            .freedom
-            .hand
-            .map(|_| shared.shape.slopes(problem.given, &parameters.pose, problem.rest, &posed));
-        let numbers = prior.dofs().len();
-        let (corrections, of_hand) = (at.first_correction(), at.of_hand());
-        let mut rows = Rows::new(prior.dofs(), &twists);
-        for (v, (view, boundary)) in views.iter().zip(&boundaries).enumerate() {
-            let MatchedBoundary { place, scale, nearer, distances, margin, weights } = boundary;
-            system.begin_boundary(*weights);
-            system.add_penalties(numbers + v, &[GaussianPenalty::new(*margin, loss.margin)]);
-            for (found, distance) in view.correspondences.iter().zip(distances) {
-                let residual = distance - margin;
-                let contact = place.contact(found, &posed, *scale);
-                rows.clear();
-                rows.of_pose(&contact);
-                rows.of_translation(*distance * *nearer);
-                rows.own.push((numbers + v, -1.0));
-                if !parameters.corrections.is_empty() {
-                    let first = corrections + ExtrinsicsCorrection::NUMBERS * v;
-                    rows.own.extend(place.row(&contact, first));
-                }
-                if let Some(slopes) = &slopes {
-                    rows.of_shape(&contact, &slopes[found.primitive], *scale);
-                }
-                if !shared.corrections.is_empty() {
-                    rows.shared
-                        .extend(place.row(&contact, of_hand + ExtrinsicsCorrection::NUMBERS * v));
-                }
-                let (energy, weight) = (loss.energy(residual), loss.weight(residual));
-                system.add_boundary_residual(residual, energy, weight, &rows.own, &rows.shared);
+    pub(crate) fn linearised(mut self, views: &[ViewMatcher]) -> NormalEquations {
+        let mut system = std::mem::take(&mut self.prior);
+        let FramePoint { problem, parameters, shared, .. } = self.at;
+        let twists = self.hand.twists(&parameters.pose, problem.rest);
+        let mut rows = Rows::new(self.frame().prior.dofs(), &twists);
+        let (given, pose, rest) = (problem.given, &parameters.pose, problem.rest);
+        let slopes =
+            problem.freedom.hand.map(|_| shared.shape.slopes(given, pose, rest, &self.posed));
+        let slopes = slopes.as_deref();
+        for (v, view) in views.iter().enumerate() {
+            self.add_boundary(&mut system, v, view, slopes, &mut rows);
+            if self.at.loss.drawn == DrawnTerm::Area {
+                self.add_areas(&mut system, v, view, slopes, &mut rows);
             }
         }
+        self.add_landmarks(&mut system, &mut rows);
+        for penetration in penetrations(&self.posed) {
+            rows.of_penetration(&penetration, &self.posed, slopes);
+            let Penetration { excess, .. } = penetration;
+            system.add(excess, penetration.energy(), Penetration::WEIGHT, &rows.own, &rows.shared);
+        }
+        system
+    }
+
+    /// Adds how far a view's observed boundary is from the hand.
+    fn add_boundary(
+        &self,
+        system: &mut NormalEquations,
+        v: usize,
+        view: &ViewMatcher,
+        slopes: Option<&[PrimitiveSlopes]>,
+        rows: &mut Rows,
+    ) {
+        let MatchedBoundary { nearer, distances, margin, weights, .. } = &self.boundaries[v];
+        let loss = self.at.loss;
+        system.begin_boundary(*weights);
+        let known = GaussianPenalty::new(*margin, loss.margin);
+        system.add_penalties(self.frame().prior.dofs().len() + v, &[known]);
+        for (found, distance) in view.correspondences.iter().zip(distances) {
+            let residual = distance - margin;
+            self.distance_rows(v, found, slopes, -1.0, rows);
+            rows.of_translation(*distance * *nearer);
+            let (energy, weight) = (loss.energy(residual), loss.weight(residual));
+            system.add_boundary_residual(residual, energy, weight, &rows.own, &rows.shared);
+        }
+    }
+
+    /// Adds the areas between a view's silhouettes: what they cost, and how that changes as the drawn outline moves along
+    /// its normals.
+    fn add_areas(
+        &self,
+        system: &mut NormalEquations,
+        v: usize,
+        view: &ViewMatcher,
+        slopes: Option<&[PrimitiveSlopes]>,
+        rows: &mut Rows,
+    ) {
+        let MatchedBoundary { areas, grain, .. } = &self.boundaries[v];
+        system.add_areas(*areas);
+        for DrawnPlace { drawn, outside, length } in &view.drawn_places {
+            let residual = -outside / grain;
+            self.distance_rows(v, drawn, slopes, 0.0, rows);
+            let weight = length * self.at.loss.area_weight(residual.abs());
+            system.add_area_slope(residual, weight, &rows.own, &rows.shared);
+        }
+    }
+
+    /// The slopes of how far outside the hand a place of a view is; `of_margin` is that by the view's margin.
+    fn distance_rows(
+        &self,
+        v: usize,
+        found: &Correspondence,
+        slopes: Option<&[PrimitiveSlopes]>,
+        of_margin: f64,
+        rows: &mut Rows,
+    ) {
+        let FramePoint { parameters, shared, .. } = self.at;
+        let MatchedBoundary { place, scale, .. } = &self.boundaries[v];
+        let contact = place.contact(found, &self.posed, *scale);
+        let of_camera = ExtrinsicsCorrection::NUMBERS * v;
+        rows.clear();
+        rows.of_pose(&contact);
+        rows.own.push((self.frame().prior.dofs().len() + v, of_margin));
+        if !parameters.corrections.is_empty() {
+            rows.own.extend(place.row(&contact, self.at.first_correction() + of_camera));
+        }
+        if let Some(slopes) = slopes {
+            rows.of_shape(&contact, &slopes[found.primitive], *scale);
+        }
+        if !shared.corrections.is_empty() {
+            rows.shared.extend(place.row(&contact, self.at.of_hand() + of_camera));
+        }
+    }
+
+    /// Adds how far landmarks are from their joints.
+    fn add_landmarks(&self, system: &mut NormalEquations, rows: &mut Rows) {
+        let FramePoint { problem, parameters, shared, loss, .. } = self.at;
+        let evidence = &self.frame().evidence;
         let joint_slopes = match problem.freedom.hand {
             Some(_) if !evidence.landmarks.is_empty() => {
                 Some(shared.shape.joint_slopes(problem.given, &parameters.pose, problem.rest))
@@ -67,36 +129,35 @@ impl MatchedFrame<'_> {
         };
         for (k, seen) in evidence.landmarks.iter().enumerate() {
             let v = evidence.place_of(k);
-            let place = Place::new(seen.camera(), at.correction(v), problem.rest.translation);
+            let place = Place::new(seen.camera(), self.at.correction(v), problem.rest.translation);
             let of_place = ExtrinsicsCorrection::NUMBERS * v;
             let slots = Slots {
-                own_place: (!parameters.corrections.is_empty()).then_some(corrections + of_place),
-                shared_place: (!shared.corrections.is_empty()).then_some(of_hand + of_place),
+                own_place: (!parameters.corrections.is_empty())
+                    .then_some(self.at.first_correction() + of_place),
+                shared_place: (!shared.corrections.is_empty())
+                    .then_some(self.at.of_hand() + of_place),
                 shape: joint_slopes.as_deref(),
             };
-            let residuals = LandmarkResiduals::new(seen, place, &posed, loss);
-            residuals.add_to(&mut system, &posed, evidence.views(), &slots, &mut rows);
+            let residuals = LandmarkResiduals::new(seen, place, &self.posed, loss);
+            residuals.add_to(system, &self.posed, evidence.views(), &slots, rows);
         }
-        for penetration in penetrations(&posed) {
-            rows.of_penetration(&penetration, &posed, slopes.as_deref());
-            let Penetration { excess, .. } = penetration;
-            system.add(excess, penetration.energy(), Penetration::WEIGHT, &rows.own, &rows.shared);
-        }
-        system
+    }
+
+    fn frame(&self) -> &Frame<'_> {
+        &self.at.problem.frames[self.at.frame]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use glam::DAffine3;
-    use glam::DVec2;
-    use phalanx_camera::{Camera, Distortion, Rig};
+    use glam::{DVec2, DVec3};
+    use phalanx_camera::{Camera, Distortion, Intrinsics, Rig};
     use phalanx_hand::{Digit, Dof, HandShape, Landmark, Pose};
     use phalanx_render::Renderer;
     use proptest::prelude::*;
 
     use super::*;
-    use crate::geometry::correspondence::Correspondence;
     use crate::geometry::self_collision;
     use crate::geometry::sphere_hull::SphereHull;
     use crate::observation::evidence::Evidence;
@@ -193,6 +254,68 @@ mod tests {
         Both,
     }
 
+    /// The slope of the areas between silhouettes, by each number of a pose, is what a small change of the number adds to
+    /// them: a finger that was not seen where it is drawn, one that was seen where none is drawn, and a hand that was seen
+    /// elsewhere.
+    #[test]
+    fn areas_change_as_their_slope_foretells() {
+        let (given, rest) = (HandShape::adult(), DAffine3::IDENTITY);
+        let intrinsics = Intrinsics::pinhole(640, 480, 800.0);
+        let camera = [250.0, 450.0, 90.0].into();
+        let camera = Camera::look_at("one", intrinsics, camera, DVec3::Z * 80.0, DVec3::Z).unwrap();
+        let mut truth = Pose::REST;
+        truth[Dof::IndexMcp] = 0.9;
+        truth[Dof::TX] = 6.0;
+        let mut pose = Pose::REST;
+        pose[Dof::RingMcp] = 0.7;
+        let evidence = [seen(&camera, &given, &truth, &rest)];
+        let prior = PosePrior::independent(pose, &[1e6; Dof::COUNT]).unwrap();
+        let frames = vec![Frame { evidence: Evidence::from(&evidence[..]), prior: &prior }];
+        let freedom = FreeParameters::default();
+        let problem = Problem { given: &given, rest: &rest, frames, freedom };
+        let loss = RobustLoss {
+            reach: 12.0,
+            noise: 0.5,
+            margin: 1.0,
+            every: 1,
+            disagreement: f64::INFINITY,
+            drawn: DrawnTerm::Area,
+        };
+        let mut views = [ViewMatcher::new(&evidence[0], loss.noise).unwrap()];
+        let shared = problem.shared();
+        let mut linearised = |pose: &Pose, with_slope: bool| {
+            let parameters = problem.frame_parameters(0, pose);
+            let (problem, parameters, shared) = (&problem, &parameters, &shared);
+            let at = FramePoint { problem, frame: 0, parameters, shared, loss };
+            let matched = at.matched(&mut views, f64::INFINITY).unwrap().unwrap();
+            if !with_slope {
+                views[0].drawn_places.clear();
+            }
+            matched.linearised(&views)
+        };
+        let (with, without) = (linearised(&pose, true), linearised(&pose, false));
+        for (dof, step) in [
+            (Dof::IndexMcp, 0.05),
+            (Dof::IndexAbduction, 0.05),
+            (Dof::RingMcp, 0.05),
+            (Dof::TX, 2.0),
+            (Dof::TY, 2.0),
+            (Dof::ThetaZ, 0.03),
+        ] {
+            let slope = with.own_gradient()[dof.index()] - without.own_gradient()[dof.index()];
+            let mut areas = |offset: f64| {
+                let mut pose = pose;
+                pose[dof] += offset;
+                linearised(&pose, true).boundaries[0].areas
+            };
+            let foretold = (areas(step) - areas(-step)) / (2.0 * step);
+            assert!(foretold.abs() > 100.0, "{dof}: {foretold} says nothing");
+            // A millimetre is taken to be as wide as at the hand's place at rest, wherever on the hand it is.
+            let off = (slope - foretold).abs() / foretold.abs();
+            assert!(off < 0.2, "{dof}: {slope} {foretold}");
+        }
+    }
+
     proptest! {
         #![proptest_config(crate::property::cases(24))]
 
@@ -247,7 +370,7 @@ mod tests {
                     cameras: Some(ExtrinsicsPrior { turn: 1e6, shift: 1e6, motion: moves }),
                 },
             };
-            let loss = RobustLoss { reach: 3.0, noise: 0.5, margin: 1.0, every: 7, disagreement: f64::INFINITY };
+            let loss = RobustLoss { reach: 3.0, noise: 0.5, margin: 1.0, every: 7, disagreement: f64::INFINITY, drawn: DrawnTerm::Outline };
             let (parameters, shared) = (problem.frame_parameters(0, &pose), problem.shared());
             let mut views: Vec<ViewMatcher> =
                 evidence.silhouettes.iter().map(|own| ViewMatcher::new(own, loss.noise).unwrap()).collect();

@@ -124,7 +124,7 @@ impl Tracker {
         Ok(Self {
             cameras: cameras.to_vec(),
             postures: starts::pose_prior()?,
-            following: follow::settings(),
+            following: follow::settings(cameras.len()),
             searching: consensus::refinement(),
             delay,
             known,
@@ -190,7 +190,9 @@ impl Tracker {
         let prediction = last.as_ref().and_then(|last| {
             Some(last.motion.as_ref()?.predicted(time - last.time, &self.noise, self.hand()))
         });
-        let next = if let (Some(last), Some(prediction)) = (&last, &prediction) {
+        let next = if self.may_tell_size(frame) {
+            self.begun(time, frame, &[])?
+        } else if let (Some(last), Some(prediction)) = (&last, &prediction) {
             self.followed(time, frame, last, prediction)?
         } else {
             let near = self.rest;
@@ -235,6 +237,14 @@ impl Tracker {
             self.rest.get_or_insert(motion.rest);
         }
         Ok(Last { time, found, motion })
+    }
+
+    /// Whether a frame may be the first that tells how large the hand is: one camera, which left that open, left open as
+    /// well how far away the hand is, so that it is looked for anew.
+    fn may_tell_size(&self, frame: &TakeFrame) -> bool {
+        let is_awaited = self.own_hand.as_ref().is_some_and(|own_hand| !own_hand.is_sized());
+        let masks = frame.masks.iter().flatten().filter(|mask| mask.hand_pixels().next().is_some());
+        is_awaited && masks.count() + frame.landmarks.iter().flatten().count() > 1
     }
 
     /// The first frame that shows a hand that is still to be learnt to two cameras: it tells roughly how large the hand is,
@@ -311,7 +321,7 @@ impl Tracker {
         }
         let rest = *rest;
         let Some(own_hand) = self.own_hand.take() else { return Ok(()) };
-        let believing = consensus::believing();
+        let believing = consensus::believing(self.cameras.len());
         let absolute =
             FrameFitter { weights: self.known.weights.clone(), ..self.fitter(&believing) };
         let ViewKnowledge { weights, persistent } = ViewKnowledge::of(&absolute, own_hand.kept())?;
