@@ -243,8 +243,12 @@ impl Tracker {
     /// well how far away the hand is, so that it is looked for anew.
     fn may_tell_size(&self, frame: &TakeFrame) -> bool {
         let is_awaited = self.own_hand.as_ref().is_some_and(|own_hand| !own_hand.is_sized());
-        let masks = frame.masks.iter().flatten().filter(|mask| mask.hand_pixels().next().is_some());
-        is_awaited && masks.count() + frame.landmarks.iter().flatten().count() > 1
+        let is_seen = |&camera: &usize| {
+            let mask = frame.masks.get(camera).and_then(Option::as_ref);
+            mask.is_some_and(|mask| mask.hand_pixels().next().is_some())
+                || frame.landmarks.get(camera).is_some_and(Option::is_some)
+        };
+        is_awaited && (0..self.cameras.len()).filter(is_seen).count() > 1
     }
 
     /// The first frame that shows a hand that is still to be learnt to two cameras: it tells roughly how large the hand is,
