@@ -70,12 +70,30 @@ impl Filler {
         for row in window.rows.clone() {
             let start = row * self.width;
             let span = start + window.columns.start..start + window.columns.end;
-            let mut inside = 0;
-            for (flip, pixel) in self.flips[span.clone()].iter_mut().zip(&mut mask[span]) {
-                inside ^= std::mem::take(flip);
-                *pixel |= inside;
-            }
+            sweep_row(&mut self.flips[span.clone()], &mut mask[span]);
         }
+    }
+}
+
+/// Paints what is inside of a row and clears its marks.
+fn sweep_row(flips: &mut [u8], pixels: &mut [u8]) {
+    let (flips, last_flips) = flips.as_chunks_mut::<8>();
+    let (pixels, last_pixels) = pixels.as_chunks_mut::<8>();
+    let mut inside = 0;
+    for (flips, pixels) in flips.iter_mut().zip(pixels) {
+        // Each byte becomes the flips of all bytes up to it.
+        let mut painted = u64::from_le_bytes(std::mem::take(flips));
+        painted ^= painted << 8;
+        painted ^= painted << 16;
+        painted ^= painted << 32;
+        painted ^= inside;
+        inside = if painted >> 63 == 1 { u64::MAX } else { 0 };
+        *pixels = (u64::from_le_bytes(*pixels) | painted).to_le_bytes();
+    }
+    let mut inside = inside as u8;
+    for (flip, pixel) in last_flips.iter_mut().zip(last_pixels) {
+        inside ^= std::mem::take(flip);
+        *pixel |= inside;
     }
 }
 

@@ -65,7 +65,13 @@ fn alike_around(mask: &Mask, places: [Option<DVec2>; 4]) -> Option<u8> {
     let mut rows = rows.map(|y| &mask.as_raw()[y * width..][columns.clone()]);
     // There is nothing outside the mask.
     let hand = is_within && rows.clone().next().is_some_and(|row| row[0] > 127);
-    rows.all(|row| row.iter().all(|&pixel| (pixel > 127) == hand)).then_some(255 * u8::from(hand))
+    // Whole rows at once: most are alike.
+    let is_alike = |row: &[u8]| {
+        let differing =
+            row.iter().fold(0, |differing, &pixel| differing | u8::from((pixel > 127) != hand));
+        differing == 0
+    };
+    rows.all(is_alike).then_some(255 * u8::from(hand))
 }
 
 /// Fills part of a row of pixels, from one on, so many samples along each side of a pixel.

@@ -29,26 +29,29 @@ pub(crate) fn boundary_edges(mask: &Mask, edges: &mut Vec<DVec2>) {
 
 /// Calls for every place at which one row of pixels is hand and the other is not.
 fn changes(one: &[u8], other: &[u8], mut at: impl FnMut(usize)) {
-    // Nearly all of a picture is alike: rows and pieces that are need not be looked at pixel by pixel.
-    const PIECE: usize = 16;
+    /// Pixels that are looked at together.
+    const PIECE: usize = 8;
+    // Nearly all of a picture is alike.
     if one == other {
         return;
     }
-    let mut piece = |first: usize, one: &[u8], other: &[u8]| {
-        let pairs = one.iter().zip(other).enumerate();
-        pairs
-            .filter(|(_, (a, b))| Mask::is_hand_level(**a) != Mask::is_hand_level(**b))
-            .for_each(|(x, _)| at(first + x));
-    };
-    // Arrays are compared at once.
     let ((ones, one_end), (others, other_end)) = (one.as_chunks::<PIECE>(), other.as_chunks());
     for (k, (one, other)) in ones.iter().zip(others).enumerate() {
-        if one != other {
-            piece(PIECE * k, one, other);
+        let mut differing = (u64::from_le_bytes(*one) ^ u64::from_le_bytes(*other)) & HAND_LEVELS;
+        while differing != 0 {
+            at(PIECE * k + (differing.trailing_zeros() / u8::BITS) as usize);
+            differing &= differing - 1;
         }
     }
-    piece(PIECE * ones.len(), one_end, other_end);
+    for (k, (one, other)) in one_end.iter().zip(other_end).enumerate() {
+        if Mask::is_hand_level(*one) != Mask::is_hand_level(*other) {
+            at(PIECE * ones.len() + k);
+        }
+    }
 }
+
+/// The bit of each of eight levels that all levels of hand have and no other.
+const HAND_LEVELS: u64 = u64::from_ne_bytes([0x80; 8]);
 
 /// Which way the background is from an edge: from the mean of the hand's pixels around it to the
 /// edge.

@@ -8,10 +8,11 @@ use crate::observation::boundary::beside;
 /// rare places the second nearest.
 pub(crate) fn nearest_edges(edges: &[DVec2], (width, height): (u32, u32)) -> Vec<u32> {
     let (w, h) = (width as usize, height as usize);
+    let doubled = |edge: &DVec2| [(2.0 * edge.x) as i32, (2.0 * edge.y) as i32];
     let mut nearest = Nearest {
-        edges,
-        of_pixels: vec![u32::MAX; w * h],
-        squared: vec![f64::INFINITY; w * h],
+        edges: edges.iter().map(doubled).collect(),
+        of_pixels: vec![NONE; w * h],
+        squared: vec![u32::MAX; w * h],
         width: w,
     };
     for (index, edge) in edges.iter().enumerate() {
@@ -42,21 +43,26 @@ pub(crate) fn nearest_edges(edges: &[DVec2], (width, height): (u32, u32)) -> Vec
     nearest.of_pixels
 }
 
+/// Of a pixel that no edge was offered to yet.
+const NONE: u32 = u32::MAX;
+
 /// The nearest edge of every pixel so far.
-struct Nearest<'a> {
-    edges: &'a [DVec2],
+struct Nearest {
+    /// In half pixels, which are integers for edges as for the middles of pixels.
+    edges: Vec<[i32; 2]>,
     of_pixels: Vec<u32>,
-    /// How far it is from the pixel's middle, squared.
-    squared: Vec<f64>,
+    /// How far it is from the pixel's middle, half pixels squared.
+    squared: Vec<u32>,
     width: usize,
 }
 
-impl Nearest<'_> {
+impl Nearest {
     /// An edge that may be nearer to a pixel.
     fn offer(&mut self, x: usize, y: usize, edge: u32) {
-        let Some(at) = self.edges.get(edge as usize) else { return };
+        let at = self.edges[edge as usize];
         let pixel = y * self.width + x;
-        let squared = at.distance_squared(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        let [dx, dy] = [at[0] - (2 * x as i32 + 1), at[1] - (2 * y as i32 + 1)];
+        let squared = (dx * dx + dy * dy) as u32;
         if squared < self.squared[pixel] {
             (self.of_pixels[pixel], self.squared[pixel]) = (edge, squared);
         }
@@ -65,7 +71,7 @@ impl Nearest<'_> {
     /// That of another pixel.
     fn take(&mut self, x: usize, y: usize, from_x: usize, from_y: usize) {
         let edge = self.of_pixels[from_y * self.width + from_x];
-        if edge != self.of_pixels[y * self.width + x] {
+        if edge != self.of_pixels[y * self.width + x] && edge != NONE {
             self.offer(x, y, edge);
         }
     }
