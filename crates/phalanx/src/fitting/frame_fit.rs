@@ -362,6 +362,7 @@ impl FrameFitter<'_> {
             Postures::Each(poses) => {
                 starts.extend(poses.iter().map(|digits| starts::with_digits(&own, digits)));
                 starts.extend(starts::each_digit(&own));
+                starts.extend(starts::exchanged(&own));
             }
             Postures::All => starts.extend(starts::postures(&own)),
         }

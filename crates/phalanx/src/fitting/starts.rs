@@ -62,6 +62,28 @@ pub(super) fn each_digit(pose: &Pose) -> Vec<Pose> {
     fingers.chain(THUMB_DEG.iter().map(|degrees| with(Digit::Thumb, degrees))).collect()
 }
 
+/// A pose with the angles of two fingers exchanged, for each pair of them, and with those of all fingers handed on to the
+/// next one, either way: one finger is easily taken for its neighbour.
+pub(super) fn exchanged(pose: &Pose) -> Vec<Pose> {
+    let fingers = Digit::FINGERS;
+    let with = |from: [usize; 4]| {
+        let mut posed = *pose;
+        for (finger, from) in fingers.into_iter().zip(from) {
+            for (dof, from) in finger.dofs().into_iter().zip(fingers[from].dofs()) {
+                posed[dof] = pose[from];
+            }
+        }
+        posed
+    };
+    let pairs = (0..4).flat_map(|one| (0..one).map(move |other| (one, other)));
+    let swapped = pairs.map(|(one, other)| {
+        let mut from = [0, 1, 2, 3];
+        from.swap(one, other);
+        from
+    });
+    swapped.chain([[1, 2, 3, 0], [3, 0, 1, 2]]).map(with).collect()
+}
+
 /// A pose with the digits of another.
 pub(super) fn with_digits(pose: &Pose, digits: &Pose) -> Pose {
     let mut posed = *pose;
