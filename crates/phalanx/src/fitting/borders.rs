@@ -3,7 +3,8 @@
 use phalanx_refine::{BoundaryNoise, BoundaryResiduals};
 use rayon::prelude::*;
 
-use super::frame_fit::{Found, FrameFitter};
+use super::found::Found;
+use super::frame_fit::FrameFitter;
 use crate::error::Result;
 
 /// Frames that borders are looked at in.

@@ -2,7 +2,7 @@
 
 use phalanx_refine::PosePrior;
 
-use super::frame_fit::Found;
+use super::found::Found;
 use super::motion::Motion;
 
 /// Of several poses of each frame, the ones that are likeliest as they follow each other (Viterbi 1967): each is

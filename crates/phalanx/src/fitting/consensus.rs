@@ -6,9 +6,11 @@ use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::{DrawnTerm, PoseFitSettings};
 use rayon::prelude::*;
 
-use super::frame_fit::{Found, FrameFitter};
+use super::found::Found;
+use super::frame_fit::FrameFitter;
 use super::misfit::DISAGREEMENT;
 use super::observation::{Sight, length_mm};
+use super::search;
 use super::starts;
 use super::take_frame::TakeFrame;
 use crate::error::{Error, Result};
@@ -76,7 +78,7 @@ pub(super) fn key_frames(
     let chosen = evenly(frames.len(), KEY_FRAMES);
     progress.begin("look for the hand", chosen.len());
     let search = |&k: &usize| {
-        let found = fitter.search(&Sight::of(cameras, &frames[k])?);
+        let found = search::anywhere(fitter, &Sight::of(cameras, &frames[k])?);
         progress.step();
         found
     };

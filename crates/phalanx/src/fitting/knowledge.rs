@@ -5,7 +5,8 @@ use phalanx_hand::JOINTS;
 use phalanx_refine::{BoundaryNoise, LandmarkNoise};
 
 use super::borders::border_noise;
-use super::frame_fit::{Found, FrameFitter};
+use super::found::Found;
+use super::frame_fit::FrameFitter;
 use super::weights::{PointWeight, ViewWeights};
 use crate::error::Result;
 

@@ -3,7 +3,7 @@
 use phalanx_hand::{Dof, Pose};
 use phalanx_refine::PosePrior;
 
-use super::frame_fit::Found;
+use super::found::Found;
 use crate::error::Result;
 
 /// How the joint angles of a take move.

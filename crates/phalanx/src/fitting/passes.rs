@@ -5,10 +5,12 @@ use phalanx_hand::Pose;
 use rayon::prelude::*;
 
 use super::chain::likeliest;
-use super::frame_fit::{Found, FrameFitter, Postures};
+use super::found::Found;
+use super::frame_fit::{FrameFitter, Postures};
 use super::motion::Motion;
 use super::observation::Sight;
 use super::repertoire;
+use super::search;
 use super::take_frame::TakeFrame;
 use super::views;
 use crate::error::Result;
@@ -27,7 +29,7 @@ pub(super) fn first(
 ) -> Result<Vec<Option<Found>>> {
     progress.begin("fit each frame", frames.len());
     let search = |frame: &TakeFrame| {
-        let found = fitter.search_near(&Sight::of(cameras, frame)?, near);
+        let found = search::near(fitter, &Sight::of(cameras, frame)?, near);
         progress.step();
         found
     };
@@ -131,7 +133,7 @@ pub(super) fn recovered(
             return Ok(found[k].clone());
         }
         let places: Vec<_> = near.iter().map(|(_, near)| near.frame(fitter.hand)).collect();
-        let other = fitter.search_near(&Sight::of(cameras, &frames[k])?, &places)?;
+        let other = search::near(fitter, &Sight::of(cameras, &frames[k])?, &places)?;
         let near: Vec<&Found> = near.iter().map(|(_, found)| *found).collect();
         let other = match &other {
             Some(other) => {

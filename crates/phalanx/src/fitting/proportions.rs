@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::consensus::evenly;
-use super::frame_fit::{Found, FrameFitter, Seen};
+use super::found::Found;
+use super::frame_fit::{FrameFitter, Seen};
 use super::views;
 use crate::error::{Error, Result};
 

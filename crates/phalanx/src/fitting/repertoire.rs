@@ -2,7 +2,7 @@
 
 use phalanx_hand::Pose;
 
-use super::frame_fit::Found;
+use super::found::Found;
 use super::starts;
 
 /// So many postures at most.

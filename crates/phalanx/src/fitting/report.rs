@@ -6,7 +6,8 @@ use phalanx_hand::{Dof, JOINTS, Pose};
 use phalanx_refine::{Agreement, Posterior};
 
 use super::flesh;
-use super::frame_fit::{Found, FrameFitter};
+use super::found::Found;
+use super::frame_fit::FrameFitter;
 use super::misfit;
 use super::proportions::KnownHand;
 use super::starts;

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::consensus::evenly;
 use super::frame_fit::FrameFitter;
 use super::observation::Sight;
+use super::search;
 use super::take_frame::TakeFrame;
 use crate::error::Result;
 use crate::progress::Progress;
@@ -47,7 +48,7 @@ pub(super) fn of_hand(
         let fitter = FrameFitter { hand: &hand, weights: fitter.weights.clone(), ..*fitter };
         progress.begin("try a size of the hand", sights.len());
         let of_frame = |sight: &Sight| {
-            let found = fitter.search_near(sight, &[*place]);
+            let found = search::near(&fitter, sight, &[*place]);
             progress.step();
             Ok(found?.map_or(f64::INFINITY, |found| found.misfit))
         };

@@ -165,6 +165,27 @@ mod tests {
 
     use super::*;
 
+    #[test]
+    fn fingers_change_places_and_nothing_else_moves() {
+        let mut pose = Pose::REST;
+        pose[Dof::ThumbMcp] = 0.7;
+        for (finger, bent) in Digit::FINGERS.into_iter().zip([0.1, 0.2, 0.3, 0.4]) {
+            pose[finger.dofs()[2]] = bent;
+        }
+        let bent = |posed: &Pose| Digit::FINGERS.map(|finger| posed[finger.dofs()[2]]);
+        let exchanged = exchanged(&pose);
+        let orders: Vec<[f64; 4]> = exchanged.iter().map(bent).collect();
+        for posed in &exchanged {
+            let mut sorted = bent(posed);
+            assert_ne!(sorted, bent(&pose));
+            sorted.sort_by(f64::total_cmp);
+            assert_eq!(sorted, bent(&pose));
+            assert_eq!(posed[Dof::ThumbMcp], 0.7);
+        }
+        assert!(orders.contains(&[0.2, 0.1, 0.3, 0.4]) && orders.contains(&[0.4, 0.1, 0.2, 0.3]));
+        assert!((1..orders.len()).all(|k| !orders[..k].contains(&orders[k])));
+    }
+
     proptest! {
         #![proptest_config(crate::property::cases(256))]
 

@@ -8,13 +8,15 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::consensus::{self, VolumeEstimate};
-use super::frame_fit::{Found, FrameFitter, WORTH_ANOTHER};
+use super::found::Found;
+use super::frame_fit::{FrameFitter, WORTH_ANOTHER};
 use super::knowledge::ViewKnowledge;
 use super::misfit;
 use super::observation::{Sight, fitted_hand};
 use super::passes;
 use super::proportions::{self, HandEvidence, KnownHand};
 use super::report::{FrameFit, Reporter};
+use super::search;
 use super::size;
 use super::starts;
 use super::take_frame::TakeFrame;
@@ -132,7 +134,7 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
     let relative = fitter(weights.relative());
     let rest = take.volume.volume.rest_frame();
     let sight = Sight::of(cameras, frame)?;
-    let found = relative.search_near(&sight, &[rest])?.ok_or(Error::NoHand)?;
+    let found = search::near(&relative, &sight, &[rest])?.ok_or(Error::NoHand)?;
     let relative = FrameFitter { refinement: &consensus::near(cameras.len()), ..relative };
     let found = relative.improved(found)?;
     let found = views::without_disagreeing(&relative, &found)?;

@@ -3,7 +3,8 @@
 use phalanx_refine::Agreement;
 use rayon::prelude::*;
 
-use super::frame_fit::{Found, FrameFitter, Postures};
+use super::found::Found;
+use super::frame_fit::{FrameFitter, Postures};
 use super::misfit;
 use crate::error::Result;
 

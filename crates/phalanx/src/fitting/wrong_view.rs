@@ -4,7 +4,8 @@
 use rayon::prelude::*;
 
 use super::consensus::evenly;
-use super::frame_fit::{Found, FrameFitter, Postures};
+use super::found::Found;
+use super::frame_fit::{FrameFitter, Postures};
 use super::views;
 use crate::error::Result;
 use crate::progress::Progress;

@@ -8,7 +8,8 @@ use super::motion::{Motion, NUMBERS};
 use super::noise::MotionNoise;
 use super::seen::Seen;
 use crate::error::Result;
-use crate::fitting::frame_fit::{Found, FrameFitter, views_used};
+use crate::fitting::found::{Found, views_used};
+use crate::fitting::frame_fit::FrameFitter;
 use crate::fitting::{consensus, frame_fit, misfit, starts};
 
 /// A frame fitted near where its hand was predicted.

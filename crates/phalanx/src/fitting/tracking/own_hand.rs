@@ -4,7 +4,8 @@ use glam::DAffine3;
 use phalanx_hand::{Dof, HandShape};
 
 use crate::error::Result;
-use crate::fitting::frame_fit::{Found, FrameFitter};
+use crate::fitting::found::Found;
+use crate::fitting::frame_fit::FrameFitter;
 use crate::fitting::proportions::{self, HandEvidence, KnownHand};
 
 /// Frames that a hand is learnt from and tested on.

@@ -4,9 +4,11 @@ use glam::DAffine3;
 use phalanx_camera::Camera;
 
 use crate::error::Result;
-use crate::fitting::frame_fit::{Found, FrameFitter, Postures};
+use crate::fitting::found::Found;
+use crate::fitting::frame_fit::{FrameFitter, Postures};
 use crate::fitting::misfit;
 use crate::fitting::observation::Sight;
+use crate::fitting::search;
 use crate::fitting::take_frame::TakeFrame;
 
 /// Looks for the hand of a frame that was `followed` badly or not at all, step by step further from where
@@ -26,8 +28,11 @@ pub(super) fn recover(
         return Ok(best);
     }
     let sight = Sight::of(cameras, frame)?;
-    let found =
-        if near.is_empty() { fitter.search(&sight)? } else { fitter.search_near(&sight, near)? };
+    let found = if near.is_empty() {
+        search::anywhere(fitter, &sight)?
+    } else {
+        search::near(fitter, &sight, near)?
+    };
     if let Some(found) = found {
         best = better(best, Some(fitter.improved(found)?));
     }

@@ -1,0 +1,146 @@
+//! Looking for a hand in one frame: where it may be, and which of the places views agree with.
+
+use glam::DAffine3;
+use phalanx_hand::{Dof, Pose};
+use phalanx_refine::{Evidence, LandmarkObservation, Screened, SilhouetteObservation};
+
+use super::found::{Found, views_used};
+use super::frame_fit::{FrameFitter, Seen, distinct};
+use super::misfit;
+use super::observation::Sight;
+use super::points::palm_frames;
+use super::starts;
+use crate::error::Result;
+use crate::localize::{HandCrop, Placement};
+
+/// Palm directions about the forearm that are tried where none is known: 45° apart, half of which steps
+/// make up for.
+const TURNS: usize = 8;
+
+/// Of the guesses where a hand may be so many are followed, and of the palm directions of each.
+const GUESSES: usize = 2;
+const STARTS: usize = 2;
+
+/// Where a hand may be, and the poses to begin with.
+struct Guess {
+    rest: DAffine3,
+    starts: Vec<Pose>,
+}
+
+/// A guess after a few steps from each of its starts.
+struct Screening {
+    rest: DAffine3,
+    screened: Vec<Screened>,
+    crops: Vec<Option<HandCrop>>,
+    evidence: Seen,
+    views: usize,
+    misfit: f64,
+}
+
+/// Looks for a hand with nothing known but what the views saw: at every placement, in every
+/// direction about the forearm; `None` where no view has anything like a hand.
+pub(super) fn anywhere(fitter: &FrameFitter<'_>, sight: &Sight) -> Result<Option<Found>> {
+    let guess = |placement: &Placement| {
+        let turned = (0..TURNS).flat_map(|turn| {
+            let mut pose = Pose::REST;
+            pose[Dof::ThetaZ] = std::f64::consts::TAU * turn as f64 / TURNS as f64;
+            starts::extremes(&pose)
+        });
+        let rest = starts::frame_of(placement.wrist, placement.arm);
+        Guess { rest, starts: turned.collect() }
+    };
+    let guesses = by_points(fitter, sight).chain(sight.placements.iter().map(guess));
+    best_of(fitter, sight, guesses)
+}
+
+/// Where the points of two cameras say that the hand is.
+fn by_points(fitter: &FrameFitter<'_>, sight: &Sight) -> impl Iterator<Item = Guess> {
+    let at = |rest: DAffine3| Guess { rest, starts: starts::extremes(&Pose::REST).to_vec() };
+    palm_frames(&sight.points, fitter.hand.side).into_iter().take(GUESSES).map(at)
+}
+
+/// Looks for a hand near where hands of other frames are: `frames` are theirs.
+pub(super) fn near(
+    fitter: &FrameFitter<'_>,
+    sight: &Sight,
+    frames: &[DAffine3],
+) -> Result<Option<Found>> {
+    let at = |rest: DAffine3| Guess { rest, starts: starts::extremes(&Pose::REST).to_vec() };
+    let own = sight.placements.iter().take(GUESSES).flat_map(|placement| {
+        let turned = frames.iter().map(|frame| starts::turned_to(placement, frame));
+        let moved = |frame: &DAffine3| DAffine3 { translation: placement.wrist, ..*frame };
+        turned.chain(frames.iter().map(moved))
+    });
+    let near = own.chain(frames.iter().copied()).map(at);
+    best_of(fitter, sight, by_points(fitter, sight).chain(near))
+}
+
+/// The best fit among some guesses.
+fn best_of(
+    fitter: &FrameFitter<'_>,
+    sight: &Sight,
+    guesses: impl Iterator<Item = Guess>,
+) -> Result<Option<Found>> {
+    let mut screenings: Vec<Screening> = Vec::new();
+    for guess in guesses {
+        screenings.extend(screened(fitter, sight, guess)?);
+    }
+    screenings.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+    screenings.truncate(GUESSES);
+    let mut best: Option<Found> = None;
+    for Screening { rest, screened, crops, evidence, views, .. } in screenings {
+        let starts = distinct(&screened, STARTS);
+        let postures: Vec<Pose> = starts.iter().take(1).flat_map(starts::postures).collect();
+        let fits = fitter.fits(&rest, &evidence, &[starts, postures].concat())?;
+        let Some(refined) = fits.into_iter().next() else { continue };
+        let misfit = misfit::of_fit(&refined, views);
+        if best.as_ref().is_none_or(|best| misfit < best.misfit) {
+            let points = sight.points.clone();
+            let left_out = fitter.weights.left_out(points.len());
+            best = Some(Found { rest, refined, crops, points, left_out, misfit });
+        }
+        // A guess that views agree with needs no other beside it.
+        if misfit < 1.0 {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+/// A guess after a few steps; `None` where no view shows anything there.
+fn screened(fitter: &FrameFitter<'_>, sight: &Sight, guess: Guess) -> Result<Option<Screening>> {
+    let Guess { rest, starts } = guess;
+    let crops = sight.crops(fitter.ball(&rest));
+    let left_out = fitter.weights.left_out(sight.points.len());
+    let evidence = fitter.seen(&crops, &sight.points, &left_out, &rest);
+    if Evidence::from(&evidence).is_empty() {
+        return Ok(None);
+    }
+    let views = views_used(&crops, &sight.points, &left_out);
+    let screened = fitter.screen(&rest, &evidence, &starts)?;
+    let Some(first) = screened.first() else { return Ok(None) };
+    let misfit = misfit_of(fitter, &rest, &evidence, &first.pose, views)?;
+    Ok(Some(Screening { rest, screened, crops, evidence, views, misfit }))
+}
+
+/// How far `views` views together are from agreeing with a pose.
+fn misfit_of(
+    fitter: &FrameFitter<'_>,
+    rest: &DAffine3,
+    evidence: &Seen,
+    pose: &Pose,
+    views: usize,
+) -> Result<f64> {
+    let of_view = |seen: &SilhouetteObservation| {
+        let agreement = fitter.refinement.agreement(fitter.hand, rest, seen, pose)?;
+        Ok(misfit::of_view(&agreement))
+    };
+    let of_points = |seen: &LandmarkObservation| {
+        let unexplained = fitter.refinement.landmark_agreement(fitter.hand, rest, seen, pose)?;
+        Ok(misfit::of_points(unexplained))
+    };
+    let borders = evidence.silhouettes.iter().map(of_view);
+    let points = evidence.landmarks.iter().map(of_points);
+    let seen: Vec<f64> = borders.chain(points).collect::<Result<_>>()?;
+    Ok(misfit::of_views(&seen, views))
+}
