@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use phalanx_hand::{Dof, Unit};
+use phalanx_hand::{Dof, Pose, Unit, may_be_radians};
 use phalanx_io::evaluation::{
     Evaluation, LEVELS, Lag, Reference, Scores, evaluate, lag, read_csv, read_motion_file, read_trc,
 };
@@ -60,7 +60,11 @@ fn reference(path: &Path) -> Result<Reference> {
             _ => bail!("a reference's name ends with .csv, .trc, .mot, .sto, .jsonl or .npz"),
         }
     };
-    read().with_context(|| path.display().to_string())
+    let reference = read().with_context(|| path.display().to_string())?;
+    if may_be_radians(reference.poses.iter().copied().map(Pose)) {
+        eprintln!("phalanx: {}: no angle exceeds 6.28°: are they radians?", path.display());
+    }
+    Ok(reference)
 }
 
 /// What was compared, in the units of files.

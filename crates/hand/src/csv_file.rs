@@ -4,7 +4,7 @@ use std::io::{Read, Write};
 
 use crate::dof::Dof;
 use crate::error::{Error, Result};
-use crate::pose::Pose;
+use crate::pose::{Pose, may_be_radians};
 
 /// The name of the column that tells which frame a row belongs to.
 const FRAME: &str = "frame";
@@ -18,7 +18,8 @@ pub struct PoseTable {
     pub poses: Vec<Pose>,
     /// The `frame` column, if the file has one, a row each.
     pub frames: Option<Vec<String>>,
-    /// What is odd but legal: columns that were passed over, values outside plausible ranges.
+    /// What is odd but legal: columns that were passed over, values outside plausible ranges, angles that may be
+    /// radians.
     pub warnings: Vec<String>,
 }
 
@@ -66,6 +67,9 @@ impl PoseTable {
         }
         if empty > 0 {
             warnings.push(format!("{empty} rows without a pose are left out"));
+        }
+        if may_be_radians(poses.iter().copied()) {
+            warnings.push("no angle exceeds 6.28: are they radians? Degrees are read".to_owned());
         }
         warnings.extend(range_warning(&poses));
         Ok(Self { poses, frames: frame_column.map(|_| frames), warnings })

@@ -17,7 +17,7 @@ pub use dof::{Digit, Dof, Unit};
 pub use error::{Error, Result};
 pub use kinematics::{JOINTS, PosedHand};
 pub use landmark::{Landmark, Landmarks};
-pub use pose::{Pose, abduction_limit};
+pub use pose::{Pose, abduction_limit, may_be_radians};
 pub use primitive::{Primitive, Sphere};
 pub use prior::{sample_pose, sample_pose_independent, sample_posture};
 pub use shape::{FingerShape, ForearmShape, HandShape, PalmShape, Side, ThumbShape};

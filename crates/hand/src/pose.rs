@@ -1,11 +1,12 @@
 //! A pose: 28 numbers.
 
+use std::f64::consts::TAU;
 use std::ops::{Index, IndexMut};
 
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::dof::{Digit, Dof};
+use crate::dof::{Digit, Dof, Unit};
 
 /// The 28 numbers of a hand pose, y ∈ ℝ²⁸ of the paper's § 3: radians and millimetres, in the
 /// order of [`Dof::ALL`].
@@ -71,6 +72,25 @@ impl Pose {
 pub fn abduction_limit(mcp: f64) -> f64 {
     let bent = (mcp / std::f64::consts::FRAC_PI_2).clamp(0.0, 1.0);
     (20.0 - 15.0 * bent).to_radians()
+}
+
+/// Whether a motion that was read as degrees may be in radians: some angle is not 0, and none is more than
+/// 2π degrees. A number that is not known is NaN.
+///
+/// ```
+/// use phalanx_hand::{Dof, Pose, may_be_radians};
+///
+/// let mut bent = Pose::REST;
+/// bent[Dof::IndexPip] = 1.2_f64.to_radians(); // 1.2 in a file of degrees
+/// assert!(may_be_radians([Pose::REST, bent]) && !may_be_radians([Pose::REST]));
+/// ```
+pub fn may_be_radians(motion: impl IntoIterator<Item = Pose>) -> bool {
+    let angle = |pose: Pose| {
+        let angles = Dof::ALL.into_iter().filter(|dof| dof.unit() == Unit::Angle);
+        angles.map(|dof| pose[dof].to_degrees().abs()).fold(0.0, f64::max)
+    };
+    let most = motion.into_iter().map(angle).fold(0.0, f64::max);
+    0.0 < most && most <= TAU
 }
 
 impl Index<Dof> for Pose {

@@ -241,6 +241,15 @@ fn a_take_agrees_with_itself() {
 }
 
 #[test]
+fn a_reference_in_radians_is_asked_about() {
+    let folder = Folder::new();
+    std::fs::write(folder.0.path().join("r.csv"), "time,index.pip\n0,0.1\n0.5,1.4\n").unwrap();
+    let output = folder.run(&["evaluate", "take.csv", "--reference", "r.csv"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && said.contains("r.csv: no angle exceeds 6.28°"), "{said}");
+}
+
+#[test]
 fn wrong_use_is_refused_with_what_to_do() {
     let folder = Folder::new();
     let says = |arguments: &[&str], what: &str| {

@@ -77,3 +77,11 @@ fn odd_values_are_kept_with_a_warning() {
     assert!(warnings.contains("index.abduction (1)"), "a bent knuckle spreads less: {warnings}");
     assert!(warnings.contains("note"), "{warnings}");
 }
+
+#[test]
+fn radians_are_told_from_degrees() {
+    let warned = |text: &str| read(text).unwrap().warnings.join("; ").contains("radians");
+    assert!(warned("index.mcp,index.pip,global.t_x\n0,0,40\n-0.4,1.57,41\n"));
+    assert!(!warned("index.mcp,index.pip\n0,0\n-0.4,57\n"), "one angle is enough");
+    assert!(!warned("index.pip\n0\n"), "a hand at rest");
+}
