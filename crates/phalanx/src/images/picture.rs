@@ -116,3 +116,41 @@ impl Segment for Segmenter {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use image::{Rgba, RgbaImage};
+
+    use super::*;
+
+    const SKIN: [u8; 3] = [205, 150, 125];
+
+    /// A picture of three pixels: opaque, half transparent, transparent.
+    fn cut_out(colours: [[u8; 3]; 3]) -> DynamicImage {
+        let pixel = |x: u32, _| {
+            let ([r, g, b], alpha) = (colours[x as usize], [255, 128, 0][x as usize]);
+            Rgba([r, g, b, alpha])
+        };
+        RgbaImage::from_fn(3, 1, pixel).into()
+    }
+
+    #[test]
+    fn a_mask_may_be_in_the_alpha_channel_in_any_colour() {
+        for colour in [[0; 3], [255; 3], SKIN] {
+            assert_eq!(mask_from(&cut_out([colour; 3])).as_raw(), &[255, 255, 0], "{colour:?}");
+        }
+        // Bright on dark where it is opaque: that tells the hand, and alpha what is nothing.
+        let mask = mask_from(&cut_out([[0; 3], [255; 3], [255; 3]]));
+        assert_eq!(mask.as_raw(), &[0, 255, 0]);
+        let opaque = cut_out([[0; 3], [255; 3], [255; 3]]).to_rgb8();
+        assert_eq!(mask_from(&opaque.into()).as_raw(), &[0, 255, 255]);
+    }
+
+    #[test]
+    fn what_is_transparent_hides_no_skin() {
+        let photograph = photograph_from(&cut_out([SKIN; 3]));
+        assert_eq!(photograph.get_pixel(0, 0).0, SKIN);
+        assert_eq!(photograph.get_pixel(1, 0).0, [102, 75, 62]);
+        assert_eq!(photograph.get_pixel(2, 0).0, [0; 3]);
+    }
+}
