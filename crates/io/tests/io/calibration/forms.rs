@@ -22,6 +22,7 @@ fn entry(camera: &phalanx_camera::Camera, changes: &[(&str, &str)]) -> String {
     let from_vector = [("VECTOR", list(&n.vector)), ("COLUMN", rows(&n.vector, 1))];
     let shape = [
         ("FLAT", list(&n.matrix)),
+        ("SKEWED", skewed_matrix(&n.matrix)),
         ("NINE", list(&n.rotation)),
         ("TVEC", rows(&n.translation, 1)),
         ("POSE", pose_matrix(&n.rotation, &n.translation)),
@@ -40,6 +41,11 @@ fn entry(camera: &phalanx_camera::Camera, changes: &[(&str, &str)]) -> String {
     let fields: Vec<String> =
         fields.iter().map(|(key, value)| format!("\"{key}\": {value}")).collect();
     format!("{{{}}}", fields.join(", "))
+}
+
+/// With what a fit leaves of a skew that it was told to leave out.
+fn skewed_matrix(k: &[f64; 9]) -> String {
+    rows(&[k[0], 1e-14, k[2], -1e-15, k[4], k[5], 0.0, 0.0, 1.0], 3)
 }
 
 fn pose_matrix(r: &[f64], t: &[f64]) -> String {
@@ -76,6 +82,7 @@ fn numbers_come_in_every_shape() {
     for changes in [
         &[][..],
         &[("camera_matrix", "FLAT")],
+        &[("camera_matrix", "SKEWED")],
         &[("rotation", "NINE")],
         &[("rotation", "VECTOR")],
         &[("rotation", "COLUMN")],
@@ -129,6 +136,12 @@ fn lenses_are_read_by_any_name() {
     twelve.extend([1e-3, 0.0, -1e-3, 0.0]);
     let prism = Distortion { s1: 1e-3, s3: -1e-3, ..rational };
     assert_form(prism.into(), &[("distortion_coefficients", &list(&twelve))]);
+}
+
+#[test]
+fn keys_that_are_not_known_are_named() {
+    let notes = assert_form(brown(), &[("vignetting", "0.5"), ("iso", "100")]).notes;
+    assert_eq!(notes, ["not known and passed over: vignetting, iso"]);
 }
 
 #[test]
