@@ -27,10 +27,11 @@ impl PoseTable {
     /// Reads poses. Columns are found by name, absent ones are 0; a column with a dot in its
     /// name must be one of the 28, or the deviation of one (`index.pip_std`), which is no pose; others are
     /// passed over with a warning. So is a row in which every number is empty: a frame without a hand in the
-    /// table of a take.
+    /// table of a take. Lines that begin with `#` are comments.
     ///
     /// # Errors
-    /// Malformed CSV, an unknown or repeated column, a cell that is no finite number, no row with a pose.
+    /// Malformed CSV, columns separated by something else than commas, an unknown or repeated column, none of a
+    /// pose, a cell that is no finite number, no row with a pose.
     ///
     /// ```
     /// use phalanx_hand::{Dof, PoseTable};
@@ -42,7 +43,8 @@ impl PoseTable {
     /// # Ok::<(), phalanx_hand::Error>(())
     /// ```
     pub fn read(reader: impl Read) -> Result<Self> {
-        let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(reader);
+        let mut csv =
+            csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(reader);
         let mut warnings = Vec::new();
         let columns = columns(csv.headers()?, &mut warnings)?;
         let frame_column = csv.headers()?.iter().position(|name| name == FRAME);
@@ -78,6 +80,9 @@ impl PoseTable {
 
 /// Which column holds which number.
 fn columns(header: &csv::StringRecord, warnings: &mut Vec<String>) -> Result<Vec<(usize, Dof)>> {
+    if let Some(separator) = other_separator(header) {
+        return Err(Error::Separator { separator });
+    }
     let mut columns: Vec<(usize, Dof)> = Vec::new();
     let mut others = Vec::new();
     for (column, name) in header.iter().enumerate() {
@@ -92,10 +97,25 @@ fn columns(header: &csv::StringRecord, warnings: &mut Vec<String>) -> Result<Vec
         }
     }
     if columns.is_empty() {
-        return Err(Error::NoPoses { what: "column of a pose" });
+        return Err(no_column(header));
     }
     warnings.extend(others_warning(&others));
     Ok(columns)
+}
+
+/// What separates the columns of spreadsheets of some languages.
+fn other_separator(header: &csv::StringRecord) -> Option<char> {
+    [';', '\t'].into_iter().find(|&separator| header.iter().any(|name| name.contains(separator)))
+}
+
+fn no_column(header: &csv::StringRecord) -> Error {
+    const SHOWN: usize = 60;
+    let line = header.iter().collect::<Vec<_>>().join(",");
+    match line.char_indices().nth(SHOWN) {
+        _ if line.is_empty() => Error::NoPoses { what: "line" },
+        Some((end, _)) => Error::NoColumn { line: format!("{}…", &line[..end]) },
+        None => Error::NoColumn { line },
+    }
 }
 
 /// Whether a column holds the deviations of one of the 28 numbers.

@@ -13,8 +13,22 @@ pub enum Error {
         name: String,
     },
     /// A file of poses that is not well-formed CSV.
-    #[error("poses: {0}")]
-    Csv(#[from] csv::Error),
+    #[error("poses: {}", reason(.0))]
+    Csv(csv::Error),
+    /// A file of poses whose columns are separated by something else than commas.
+    #[error(
+        "poses: the columns are separated by {separator:?}: separate them by commas, and write numbers with points"
+    )]
+    Separator {
+        /// What separates them.
+        separator: char,
+    },
+    /// A file of poses with no column of a pose.
+    #[error("poses: the first line, '{line}', names no column of a pose, such as 'index.pip'")]
+    NoColumn {
+        /// The file's first line, or its beginning.
+        line: String,
+    },
     /// A cell of a file of poses that is not a finite number.
     #[error("poses: row {row}, column '{column}': '{value}' is not a finite number")]
     BadCell {
@@ -31,7 +45,7 @@ pub enum Error {
         /// The column's name.
         column: String,
     },
-    /// A file of poses with no column of a pose, or with no row.
+    /// A file of poses with no row, or with nothing at all.
     #[error("poses: the file holds no {what}")]
     NoPoses {
         /// What is absent.
@@ -57,6 +71,24 @@ pub enum Error {
         /// Highest value allowed.
         high: f64,
     },
+}
+
+impl From<csv::Error> for Error {
+    fn from(error: csv::Error) -> Self {
+        Self::Csv(error)
+    }
+}
+
+/// What is wrong with a file, by its lines.
+fn reason(error: &csv::Error) -> String {
+    let line = error.position().map_or(1, csv::Position::line);
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("line {line} has {len} cells, lines before it have {expected_len}")
+        }
+        csv::ErrorKind::Utf8 { .. } => format!("line {line} is not UTF-8: save the file as UTF-8"),
+        _ => error.to_string(),
+    }
 }
 
 /// A result of this crate.

@@ -42,7 +42,8 @@ fn poses_survive_their_file_and_absent_columns_are_zero() {
 fn bad_pose_files_are_refused_by_name() {
     assert!(matches!(read("index.pip,index.pipe\n1,2\n"), Err(Error::UnknownDof { .. })));
     assert!(matches!(read("index.pip,index.pip\n1,2\n"), Err(Error::RepeatedColumn { .. })));
-    assert!(matches!(read("frame,time\n1,2\n"), Err(Error::NoPoses { .. })));
+    assert!(matches!(read("frame,time\n1,2\n"), Err(Error::NoColumn { .. })));
+    assert!(matches!(read(""), Err(Error::NoPoses { .. })));
     assert!(matches!(read("index.pip\n"), Err(Error::NoPoses { .. })));
     assert!(matches!(read("index.pip\nNaN\n"), Err(Error::BadCell { row: 1, .. })));
     assert!(matches!(read("index.pip,index.dip\n1\n"), Err(Error::Csv(_))));
@@ -76,6 +77,27 @@ fn odd_values_are_kept_with_a_warning() {
     assert!(warnings.contains("index.pip (1)"), "{warnings}");
     assert!(warnings.contains("index.abduction (1)"), "a bent knuckle spreads less: {warnings}");
     assert!(warnings.contains("note"), "{warnings}");
+}
+
+#[test]
+fn what_a_spreadsheet_makes_of_a_file_is_named() {
+    let utf16: Vec<u8> =
+        "\u{feff}index.pip\n3\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    for (bytes, words) in [
+        (&b"index.pip;index.dip\n1,5;2\n"[..], "separated by ';': separate them by commas"),
+        (b"index.pip\tindex.dip\n1\t2\n", "separated by '\\t'"),
+        (b"sep=,\nindex.pip\n3\n", "the first line, 'sep=,', names no column of a pose"),
+        (b"index_pip,index_dip\n1,2\n", "the first line, 'index_pip,index_dip', names no column"),
+        (b"index.pip,index.dip\n1,2\n3\n", "line 3 has 1 cells, lines before it have 2"),
+        (&utf16, "line 1 is not UTF-8: save the file as UTF-8"),
+    ] {
+        let error = PoseTable::read(bytes).unwrap_err();
+        let said = error.to_string();
+        assert!(said.contains(words) && !said.contains("CSV error"), "no '{words}' in: {said}");
+        assert!(std::error::Error::source(&error).is_none(), "said twice where causes are listed");
+    }
+    let commented = read("# by glove 3\nindex.pip\n30\n").unwrap();
+    assert_eq!(commented.poses.len(), 1);
 }
 
 #[test]
