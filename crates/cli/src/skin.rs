@@ -8,6 +8,7 @@ use clap::Args;
 use image::RgbImage;
 use phalanx::{Segmentation, Segmenter, mask_from, photograph_from};
 use phalanx_cli::files::Output;
+use phalanx_sampling::spread_subset;
 use phalanx_segmentation::{BackgroundModel, BackgroundParams, Mask, SkinModel, SkinTrainer};
 use serde_json::json;
 
@@ -16,8 +17,11 @@ use crate::input;
 use crate::recording::Recording;
 use crate::recording::pictures::PictureFolder;
 
-/// More pictures of a camera tell little more; of more some are taken, evenly spaced.
+/// More pictures of a camera tell little more; of more some are drawn, for every n-th of a motion that repeats itself
+/// would show one posture.
 const MOST_PICTURES: usize = 30;
+/// The seed by which they are drawn.
+const SUBSET_SEED: u64 = 0;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -157,11 +161,10 @@ fn folders_in(folder: &Path) -> Result<Vec<PathBuf>> {
 /// A folder's pictures with their names, of many some.
 fn photographs(folder: &PictureFolder) -> Result<Vec<(String, RgbImage)>> {
     let stamps = folder.stamps();
-    let count = stamps.len().min(MOST_PICTURES);
-    let chosen = (0..count).map(|k| k * stamps.len() / count);
+    let chosen = spread_subset(stamps.len(), MOST_PICTURES, SUBSET_SEED);
     let read = |at: usize| {
         let picture = photograph_from(&input::picture(&folder.path(at), None)?);
         Ok((stamps[at].name.clone(), picture))
     };
-    chosen.map(read).collect()
+    chosen.into_iter().map(read).collect()
 }

@@ -25,13 +25,34 @@ pub fn random_subset(all: usize, count: usize, seed: u64) -> Vec<usize> {
     order
 }
 
+/// One of the indices 0..`all` at random from each of at most `count` equal parts, in ascending order.
+///
+/// Use it where a subset should come from everywhere in a list, such as key frames of a recording.
+///
+/// ```
+/// use phalanx_sampling::spread_subset;
+///
+/// let some = spread_subset(1000, 10, 7);
+/// assert!(some.iter().enumerate().all(|(part, index)| index / 100 == part));
+/// assert_eq!(spread_subset(3, 10, 7), [0, 1, 2]);
+/// ```
+pub fn spread_subset(all: usize, count: usize, seed: u64) -> Vec<usize> {
+    let count = count.min(all);
+    let mut random = Pcg64Mcg::seed_from_u64(seed);
+    let first = |part: usize| part * all / count;
+    (0..count).map(|part| first(part) + below(first(part + 1) - first(part), &mut random)).collect()
+}
+
 /// Puts a list into a random order (Fisher and Yates).
 pub fn shuffle(order: &mut [usize], random: &mut impl Rng) {
     for last in (1..order.len()).rev() {
-        // The bias of so short a range in 64 bits is negligible.
-        let other = (u128::from(random.next_u64()) * (last as u128 + 1)) >> 64;
-        order.swap(last, other as usize);
+        order.swap(last, below(last + 1, random));
     }
+}
+
+/// One of 0..`count` at random. The bias of so short a range in 64 bits is negligible.
+fn below(count: usize, random: &mut impl Rng) -> usize {
+    ((u128::from(random.next_u64()) * count as u128) >> 64) as usize
 }
 
 #[cfg(test)]
@@ -43,6 +64,18 @@ mod tests {
         let (small, large) = (random_subset(500, 20, 3), random_subset(500, 90, 3));
         assert!(small.iter().all(|index| large.binary_search(index).is_ok()));
         assert_ne!(random_subset(500, 20, 4), small);
+    }
+
+    /// Every twelfth of these has the same phase.
+    #[test]
+    fn a_spread_subset_sees_every_phase_of_a_cycle() {
+        let mut counts = [0; 12];
+        for (part, index) in spread_subset(1200, 100, 3).into_iter().enumerate() {
+            assert_eq!(index / 12, part);
+            counts[index % 12] += 1;
+        }
+        assert!(counts.iter().all(|count| (2..20).contains(count)), "{counts:?}");
+        assert_eq!(spread_subset(0, 5, 3), [0; 0]);
     }
 
     /// χ² of how often each of 20 indices is among 5, over 4,000 seeds: 95 is its 99.99 % quantile

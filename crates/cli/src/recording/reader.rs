@@ -9,11 +9,15 @@ use phalanx::{Mask, TakeFrame};
 use phalanx_camera::Camera;
 use phalanx_hand::Landmarks;
 use phalanx_io::landmarks::LandmarkTrack;
+use phalanx_sampling::spread_subset;
 
 use super::landmarks::{LandmarkRecording, of_frames};
 use super::timeline::{Moment, Timeline};
 use super::{Recording, Stamp, timestamps};
 use crate::segment::Pictures;
+
+/// The seed by which some moments are drawn.
+const SUBSET_SEED: u64 = 0;
 
 /// Reads what all cameras recorded.
 pub(crate) struct Reader<'a> {
@@ -68,13 +72,11 @@ impl<'a> Reader<'a> {
         &self.timeline.moments
     }
 
-    /// Reads some moments, evenly spread; what cannot be read is noted and missing.
+    /// Reads some moments from everywhere in the recording; what cannot be read is noted and missing.
     pub(crate) fn read_some(&mut self, most: usize, failures: &mut Vec<String>) -> Vec<TakeFrame> {
-        let count = self.moments().len();
-        let some = most.min(count);
-        // The middle of each of so many equal parts.
-        let middle = |k: usize| (2 * k + 1) * count / (2 * some);
-        (0..some).map(|k| self.read_noting(middle(k), failures)).collect()
+        // Every n-th moment of a motion that repeats itself would show one posture.
+        let some = spread_subset(self.moments().len(), most, SUBSET_SEED);
+        some.into_iter().map(|moment| self.read_noting(moment, failures)).collect()
     }
 
     /// Reads a moment that comes after the last one read; what cannot be read is noted and missing.

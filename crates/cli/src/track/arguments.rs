@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
     /// The frame rate of pictures that have no times; 30 Hz by default.
     #[arg(long, value_name = "HZ", value_parser = rate)]
     pub(super) rate: Option<f64>,
-    /// A recording of up to so many moments is fitted as a whole. Of a longer one as many, evenly spread, tell
+    /// A recording of up to so many moments is fitted as a whole. Of a longer one as many, drawn from all of it, tell
     /// the hand, which is then tracked from frame to frame.
     #[arg(long, value_name = "MOMENTS", default_value = "240")]
     pub(super) fit_together: NonZeroUsize,

@@ -36,7 +36,7 @@ impl<'a> Recorded<'a> {
         Ok(Self { source, reader, times, rate })
     }
 
-    /// Fits some moments together, evenly spread; what cannot be read is noted.
+    /// Fits some moments from everywhere together; what cannot be read is noted.
     pub(super) fn fit(
         &mut self,
         most: usize,
