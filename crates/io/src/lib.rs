@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 pub mod calibration;
+mod commas;
 mod error;
 pub mod evaluation;
 pub mod export;

@@ -5,6 +5,7 @@ use std::io::Read;
 
 use csv::StringRecord;
 
+use crate::commas;
 use crate::error::Result;
 use crate::evaluation::reference::{Clock, Entry, Reference, number, problem};
 use crate::take::JOINT_NAMES;
@@ -37,6 +38,7 @@ fn joint_of(name: &str) -> Option<usize> {
 pub fn read_csv(reader: impl Read) -> Result<Reference> {
     let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(reader);
     let names = csv.headers().map_err(|error| problem(error.to_string()))?.clone();
+    commas::check(&names).map_err(problem)?;
     let column = |name: &str| names.iter().position(|other| other == name);
     let (clock, instant) = match (column("time"), column("frame")) {
         (Some(time), _) => (Clock::Time, time),

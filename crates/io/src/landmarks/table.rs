@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 
 use phalanx_hand::{JOINTS, Landmarks};
 
+use crate::commas;
 use crate::landmarks::names;
 use crate::landmarks::track::{LandmarkTrack, landmark, number_in_name};
 
 pub(super) fn read(text: &str) -> Result<Vec<LandmarkTrack>, String> {
     let mut csv = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let header = csv.headers().map_err(|error| error.to_string())?.clone();
+    commas::check(&header)?;
     let find = |names: &[&str]| header.iter().position(|column| names.contains(&column));
     let column = |names: &[&str]| {
         find(names).ok_or_else(|| format!("the column '{}' is absent", names.join("' or '")))

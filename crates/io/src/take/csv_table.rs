@@ -9,6 +9,7 @@ use std::io::{Read, Write};
 use glam::DVec3;
 use phalanx_hand::{Dof, JOINTS, Pose};
 
+use crate::commas;
 use crate::error::unwritten;
 use crate::error::{Error, Result};
 use crate::take::frames::{
@@ -150,6 +151,7 @@ fn decimal(value: Option<f64>) -> String {
 pub fn read_csv(reader: impl Read) -> Result<Take> {
     let mut csv = ::csv::ReaderBuilder::new().trim(::csv::Trim::All).from_reader(reader);
     let names = csv.headers().map_err(|error| unread(&error))?.clone();
+    commas::check(&names).map_err(|what| Error::TakeLine { line: 1, what })?;
     let columns = Columns::new(&names)?;
     let column = columns.find(HEADER)?;
     let records = csv.records().collect::<std::result::Result<Vec<_>, _>>();

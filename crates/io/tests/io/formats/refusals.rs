@@ -19,6 +19,7 @@ fn csv_error(csv: &str) -> String {
 fn csv_that_is_no_take_is_refused_by_name() {
     let good = text(&sample::open_close(Side::Right));
     assert_eq!(csv_error("frame,index.pip\n0,30\n"), "take: column 'take' is absent");
+    assert!(csv_error("frame;take\n0;1\n").contains("separated by ';'"));
     assert_eq!(
         csv_error(&good.replacen("index.pip_std", "index.pip", 1)),
         "take: column 'index.pip' stands twice"

@@ -48,6 +48,7 @@ fn json_is_refused_with_its_place() {
 fn tables_are_refused_with_their_line() {
     let table = |rows: &str| format!("frame,joint,x_px,y_px\n{rows}");
     refused(b"frame,joint,x_px\n", "'y_px' or 'y' is absent");
+    refused(b"frame;joint;x_px;y_px\n0;1;1,5;2\n", "separated by ';': separate them by commas");
     refused(table("0,21,1,1\n").as_bytes(), "line 2, column 'joint': '21'");
     refused(table("0,1,1,1\n0,2,a,1\n").as_bytes(), "line 3, column 'x_px': 'a' is no number");
     refused(table("0,1,1,1\n0,1,2,2\n").as_bytes(), "line 3: joint 1 of frame 0 comes twice");

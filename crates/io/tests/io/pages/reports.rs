@@ -156,6 +156,7 @@ fn references_that_are_none_are_refused_with_what_to_do() {
     let csv = |text: &str| read_csv(text.as_bytes()).unwrap_err().to_string();
     assert!(csv("index.pip\n3\n").contains("neither a column 'time' nor 'frame'"));
     assert!(csv("time,knee\n0,3\n").contains("such as 'index.pip'"));
+    assert!(csv("time\tindex.pip\n0\t3\n").contains("separated by '\\t'"));
     assert!(csv("time,index.pip\n0,3\n0,4\n").contains("do not ascend"));
     assert!(csv("time,index.pip\n0,x\n").contains("'x' is not a number"));
     assert!(csv("time,index.pip\n").contains("no row"));
