@@ -2,8 +2,8 @@
 //! or to be sound, but never to crash or to hang.
 
 use glam::DAffine3;
-use image::GrayImage;
-use phalanx::{Error, Estimator, PartialTraining, decode_picture};
+use image::{GrayImage, RgbImage};
+use phalanx::{Error, Estimator, PartialTraining, Segment, Segmentation, decode_picture};
 use phalanx_camera::Rig;
 use phalanx_codebook::{AnyEncoder, Encoder, Scratch};
 use phalanx_hand::{HandShape, Pose, PoseTable, Side};
@@ -20,7 +20,7 @@ pub(crate) type Target = (&'static str, fn(&[u8]));
 
 /// All of them.
 #[allow(dead_code, reason = "each fuzz target uses one of them")]
-pub(crate) const TARGETS: [Target; 14] = [
+pub(crate) const TARGETS: [Target; 15] = [
     ("model", model),
     ("part", part),
     ("rig", rig),
@@ -30,6 +30,7 @@ pub(crate) const TARGETS: [Target; 14] = [
     ("reference", reference),
     ("hand", hand),
     ("poses", poses),
+    ("segmentation", segmentation),
     ("skin_model", skin_model),
     ("wrist_model", wrist_model),
     ("coding", coding),
@@ -161,6 +162,16 @@ pub(crate) fn hand(data: &[u8]) {
 pub(crate) fn poses(data: &[u8]) {
     if let Ok(table) = PoseTable::read(data) {
         assert!(table.poses.iter().all(|pose| pose.0.iter().all(|number| number.is_finite())));
+    }
+}
+
+/// What tells the hand from the rest of each camera's pictures, and a picture.
+pub(crate) fn segmentation(data: &[u8]) {
+    let file = sealed(*b"PHXSEGM\0", Segmentation::from_bytes, data);
+    let Ok(segmentation) = Segmentation::from_bytes(&file) else { return };
+    segmentation.to_bytes().expect("what was read can be written");
+    if let Ok(segmenter) = segmentation.of_camera("top") {
+        let _ = segmenter.segment(&RgbImage::new(4, 3));
     }
 }
 
