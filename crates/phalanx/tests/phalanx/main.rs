@@ -8,5 +8,6 @@ mod golden;
 mod landmarks;
 #[path = "../property/mod.rs"]
 mod property;
+mod sizes;
 mod take;
 mod windows;
