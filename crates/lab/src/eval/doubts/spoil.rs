@@ -98,11 +98,17 @@ impl Spoil {
             }
             // The message of a refusal says so too.
             Self::Inverted => refused(None) || has(None, Cause::InvertedMask),
-            Self::Empty => refused(Some(view)),
+            Self::Empty => refused(Some(view)) || is_left_out(outcome, view),
             Self::ForeignPose => has(Some(view), Cause::ForeignMask),
             Self::NoHand => refused(None) || has(None, Cause::ForeignMask),
         }
     }
+}
+
+/// Whether the answer is from the other views, and says so.
+fn is_left_out(outcome: &Outcome, view: usize) -> bool {
+    let Outcome::Answered(doubts) = outcome else { return false };
+    doubts.iter().any(|doubt| doubt.view == view && matches!(doubt.cause, Cause::NotSeen(_)))
 }
 
 /// An ellipse somewhere in the middle, as large as a hand.
