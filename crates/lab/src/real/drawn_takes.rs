@@ -9,7 +9,7 @@ use clap::Args;
 use glam::{DAffine3, DVec3};
 use phalanx::{ItemRng, Mask, MaskNoise};
 use phalanx_camera::{Camera, Intrinsics, Volume};
-use phalanx_hand::{Dof, HandShape, Pose, Side, sample_pose};
+use phalanx_hand::{Dof, HandShape, Pose, Primitive, Side, Sphere, sample_pose};
 use phalanx_render::Renderer;
 use rayon::prelude::*;
 use serde_json::json;
@@ -38,6 +38,7 @@ struct Kind {
     size: f64,
     side: Side,
     motion: Motion,
+    company: Company,
 }
 
 /// How poses follow each other.
@@ -47,9 +48,22 @@ enum Motion {
     Smooth(usize),
     /// Each frame another posture.
     Stills,
+    /// Smooth; the hand comes into the pictures along its arm in the first quarter of the frames, and leaves them so in the
+    /// last.
+    Passing(usize),
 }
 
-const KINDS: [Kind; 7] = [
+/// What is drawn beside the hand.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Company {
+    None,
+    /// The person's other hand, which moves as it likes.
+    OtherHand,
+    /// A rod across the palm.
+    Rod,
+}
+
+const KINDS: [Kind; 10] = [
     kind("one", 1, (640, 480)),
     kind("two", 2, (640, 480)),
     Kind { size: 0.92, ..kind("three", 3, (480, 360)) },
@@ -57,11 +71,24 @@ const KINDS: [Kind; 7] = [
     Kind { size: 0.76, ..kind("child", 3, (640, 480)) },
     Kind { size: 0.85, ..kind("youth", 2, (640, 480)) },
     Kind { motion: Motion::Stills, ..kind("sixteen", 16, (320, 240)) },
+    Kind { motion: Motion::Passing(10), ..kind("passing", 3, (480, 360)) },
+    Kind { company: Company::OtherHand, ..kind("both-hands", 3, (480, 360)) },
+    Kind { company: Company::Rod, ..kind("rod", 3, (480, 360)) },
 ];
 
 const fn kind(name: &'static str, cameras: usize, picture: (u32, u32)) -> Kind {
-    Kind { name, cameras, picture, size: 1.0, side: Side::Right, motion: Motion::Smooth(10) }
+    let (side, motion, company) = (Side::Right, Motion::Smooth(10), Company::None);
+    Kind { name, cameras, picture, size: 1.0, side, motion, company }
 }
+
+/// How far behind where it works a hand is that comes or leaves, mm: no picture shows it.
+const AWAY: f64 = 500.0;
+
+/// How far beside a hand the other one is, mm.
+const BESIDE: f64 = 150.0;
+
+/// Half the length of a rod and its radius, mm, and how far its middle is from the palm's.
+const ROD: [f64; 3] = [70.0, 10.0, 25.0];
 
 /// How far bones and radii differ from the mean adult's, beside the size.
 const SPREAD: f64 = 0.1;
@@ -99,6 +126,9 @@ struct DrawnTake {
     hand: HandShape,
     rest: DAffine3,
     poses: Vec<Pose>,
+    company: Company,
+    /// Those of the other hand, if there is one.
+    other_poses: Vec<Pose>,
     /// The seed of the masks' ragged borders.
     ragged: u64,
 }
@@ -115,13 +145,13 @@ impl Kind {
         let rest = volume.rest_frame();
         let cameras = (0..self.cameras).map(|k| self.camera(k, &rest, random));
         let cameras = cameras.collect::<Result<_>>()?;
-        Ok(DrawnTake {
-            cameras,
-            hand,
-            rest,
-            poses: self.poses(frames, random),
-            ragged: random.seed(),
-        })
+        let (poses, ragged) = (self.poses(frames, random), random.seed());
+        let company = self.company;
+        let other_poses = match company {
+            Company::OtherHand => self.poses(frames, random),
+            Company::None | Company::Rod => Vec::new(),
+        };
+        Ok(DrawnTake { cameras, hand, rest, poses, company, other_poses, ragged })
     }
 
     /// Cameras stand about the arm's side, evenly and a bit at random, turned about themselves as they happen to be.
@@ -141,7 +171,7 @@ impl Kind {
 
     fn poses(&self, frames: usize, random: &mut ItemRng) -> Vec<Pose> {
         let apart = match self.motion {
-            Motion::Smooth(frames) => frames,
+            Motion::Smooth(frames) | Motion::Passing(frames) => frames,
             Motion::Stills => 1,
         };
         let keys: Vec<Pose> = (0..=frames.div_ceil(apart)).map(|_| posed(random)).collect();
@@ -153,10 +183,21 @@ impl Kind {
             for dof in Dof::ALL {
                 pose[dof] += share * (keys[key + 1][dof] - keys[key][dof]);
             }
+            if matches!(self.motion, Motion::Passing(_)) {
+                pose[Dof::TZ] -= AWAY * away(frame, frames);
+            }
             pose
         };
         (0..frames).map(pose).collect()
     }
+}
+
+/// How much of its way a hand that passes has still to come, or has gone already: all of it in the first frame and in the
+/// last, nothing in the middle half.
+fn away(frame: usize, frames: usize) -> f64 {
+    let quarter = frames as f64 / 4.0;
+    let from_end = frame.min(frames - 1 - frame) as f64;
+    (1.0 - from_end / quarter).max(0.0)
 }
 
 /// A posture of the prior, somewhere in the volume.
@@ -185,7 +226,7 @@ impl DrawnTake {
         let mask = |number: usize| -> Result<()> {
             let (frame, camera) = (number / self.cameras.len(), number % self.cameras.len());
             let camera = &self.cameras[camera];
-            let solids = self.hand.pose(&self.poses[frame], &self.rest).primitives;
+            let solids = self.solids(frame);
             let mut mask = Mask::from(Renderer::new(camera)?.silhouette(&solids)?);
             MaskNoise::Boundary.apply(&mut mask, self.ragged.wrapping_add(number as u64));
             let path = folder.join("masks").join(&camera.name).join(format!("{frame:04}.png"));
@@ -194,9 +235,50 @@ impl DrawnTake {
         (0..self.poses.len() * self.cameras.len()).into_par_iter().try_for_each(mask)
     }
 
+    /// What there is to see in a frame.
+    fn solids(&self, frame: usize) -> Vec<Primitive> {
+        let posed = self.hand.pose(&self.poses[frame], &self.rest);
+        let mut solids = posed.primitives;
+        match self.company {
+            Company::None => {}
+            Company::OtherHand => {
+                let side = match self.hand.side {
+                    Side::Left => Side::Right,
+                    Side::Right => Side::Left,
+                };
+                let other = HandShape { side, ..self.hand.clone() };
+                let beside = self.rest * DAffine3::from_translation(BESIDE * DVec3::X);
+                solids.extend(other.pose(&self.other_poses[frame], &beside).primitives);
+            }
+            Company::Rod => {
+                let [index, little] = [5, 17].map(|knuckle| posed.joints[knuckle]);
+                let along = (little - index).normalize();
+                let forward = (index.midpoint(little) - posed.joints[0]).normalize();
+                let back = self.rest.matrix3 * self.poses[frame].rotation() * DVec3::Y;
+                let normal = along.cross(forward);
+                let palmar = normal * -normal.dot(back).signum();
+                let middle = index.midpoint(little) + ROD[2] * palmar;
+                let end = |way: f64| Sphere::new(middle + way * ROD[0] * along, ROD[1]);
+                solids.push(Primitive::RoundCone([end(-1.0), end(1.0)]));
+            }
+        }
+        solids
+    }
+
+    /// Whether some camera's picture shows the whole hand.
+    fn is_seen(&self, frame: usize) -> bool {
+        let joints = self.hand.pose(&self.poses[frame], &self.rest).joints;
+        let sees = |camera: &Camera, at: DVec3| {
+            camera.project(at).is_some_and(|pixel| camera.intrinsics.contains(pixel))
+        };
+        self.cameras.iter().any(|camera| joints.iter().all(|&at| sees(camera, at)))
+    }
+
+    /// Where the joints are in the frames that show the hand.
     fn joints(&self) -> String {
         let mut text = "frame,joint,x_mm,y_mm,z_mm\n".to_owned();
-        for (frame, pose) in self.poses.iter().enumerate() {
+        let seen = self.poses.iter().enumerate().filter(|(frame, _)| self.is_seen(*frame));
+        for (frame, pose) in seen {
             for (joint, at) in self.hand.pose(pose, &self.rest).joints.iter().enumerate() {
                 let DVec3 { x, y, z } = at;
                 writeln!(text, "{frame},{joint},{x:.2},{y:.2},{z:.2}").expect("a string takes all");
