@@ -21,12 +21,14 @@ pub(super) struct OwnHand {
     mean: HandShape,
     /// Whether the mean hand is of about that person's size.
     is_sized: bool,
+    /// Frames that might have told the size.
+    looked_at: usize,
     kept: Vec<Option<Found>>,
 }
 
 impl OwnHand {
     pub(super) fn new(mean: HandShape) -> Self {
-        Self { mean, is_sized: false, kept: Vec::new() }
+        Self { mean, is_sized: false, looked_at: 0, kept: Vec::new() }
     }
 
     /// Of somebody whose hand is about as large as this mean hand.
@@ -34,8 +36,15 @@ impl OwnHand {
         Self { is_sized: true, ..Self::new(mean) }
     }
 
-    pub(super) fn is_sized(&self) -> bool {
-        self.is_sized
+    /// Whether the next frame may still tell how large the hand is: one that no picture shows whole for long keeps the size
+    /// that it was thought to have, for looking takes time.
+    pub(super) fn awaits_size(&self) -> bool {
+        !self.is_sized && self.looked_at < FRAMES
+    }
+
+    /// Counts a frame that might have told the size.
+    pub(super) fn look(&mut self) {
+        self.looked_at += 1;
     }
 
     /// Keeps a frame that was fitted well, if it shows something new; whether there are enough now.

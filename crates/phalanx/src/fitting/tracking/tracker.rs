@@ -243,7 +243,7 @@ impl Tracker {
     /// Whether a frame may be the first that tells how large the hand is: one camera, which left that open, left open as
     /// well how far away the hand is, so that it is looked for anew.
     fn may_tell_size(&self, frame: &TakeFrame) -> bool {
-        let is_awaited = self.own_hand.as_ref().is_some_and(|own_hand| !own_hand.is_sized());
+        let is_awaited = self.own_hand.as_ref().is_some_and(OwnHand::awaits_size);
         let is_seen = |&camera: &usize| {
             let mask = frame.masks.get(camera).and_then(Option::as_ref);
             mask.is_some_and(|mask| mask.hand_pixels().next().is_some())
@@ -252,13 +252,18 @@ impl Tracker {
         is_awaited && (0..self.cameras.len()).filter(is_seen).count() > 1
     }
 
-    /// The first frame that shows a hand that is still to be learnt to two cameras: it tells roughly how large the hand is,
-    /// and is fitted again if that is another size than was thought. Any other frame as it is.
+    /// The first frame that shows all of a hand that is still to be learnt to two cameras: it tells roughly how large the hand
+    /// is, and is fitted again if that is another size than was thought. Any other frame as it is.
     fn sized(&mut self, frame: &TakeFrame, next: Last) -> Result<Last> {
         let (Some(own_hand), Some(found)) = (&mut self.own_hand, &next.found) else {
             return Ok(next);
         };
-        if found.cameras_used() < 2 || own_hand.is_sized() {
+        if found.cameras_used() < 2 || !own_hand.awaits_size() {
+            return Ok(next);
+        }
+        own_hand.look();
+        // Of a hand that comes into the pictures only part is seen, which fits a smaller one.
+        if !views::is_right(&self.fitter(&self.searching), found)? {
             return Ok(next);
         }
         let place = found.frame(self.hand());
@@ -316,12 +321,13 @@ impl Tracker {
 
     /// Keeps a frame that tells of the hand, and learns the hand once there are enough.
     fn learn_hand(&mut self, next: &Last) -> Result<()> {
-        let (Some(own_hand), Some(found), Some(rest)) =
-            (&mut self.own_hand, &next.found, &self.rest)
-        else {
+        let (Some(_), Some(found), Some(rest)) = (&self.own_hand, &next.found, &self.rest) else {
             return Ok(());
         };
-        if !misfit::agrees(&found.refined) || !own_hand.keep(found) {
+        if !views::is_right(&self.fitter(&self.searching), found)? {
+            return Ok(());
+        }
+        if !self.own_hand.as_mut().is_some_and(|own_hand| own_hand.keep(found)) {
             return Ok(());
         }
         let rest = *rest;
