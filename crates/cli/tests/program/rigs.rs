@@ -3,7 +3,7 @@
 use phalanx_camera::{Lens, Rig};
 use tempfile::TempDir;
 
-use crate::desk::{Outcome, run};
+use crate::desk::{CAMERAS, Desk, Outcome, run};
 
 /// Two cameras half a metre from the hand, as Caliscope writes them, in metres; one is a fisheye.
 const CALISCOPE: &str = "
@@ -116,6 +116,41 @@ fn a_check_prints_sizes_and_angles() {
         "{}",
         outcome.err
     );
+}
+
+/// The hand is looked for in a recording, wherever the rig has its volume.
+#[test]
+fn a_check_of_a_recording_says_sizes_where_the_hand_is() {
+    let desk = Desk::new();
+    desk.write_rig("rig.toml");
+    let mut rig = Rig::from_toml(&String::from_utf8(desk.read("rig.toml")).unwrap()).unwrap();
+    let sight = (rig.volume.center - rig.cameras[0].centre()).normalize();
+    rig.volume.center += 60.0 * sight;
+    desk.write("far.toml", rig.to_toml().unwrap().as_bytes());
+    for (frame, closed) in [0.0, 0.5, 0.9].into_iter().enumerate() {
+        desk.draw_frame("take", &format!("{frame}.png"), closed);
+        desk.draw_frame("empty", &format!("{frame}.png"), closed);
+    }
+    let distances = |arguments: &[&str]| {
+        let outcome = run(desk.folder(), ["rig", "check", "--json"].iter().chain(arguments));
+        assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
+        let report: serde_json::Value = serde_json::from_str(&outcome.out).unwrap();
+        [0, 1].map(|view| report["views"][view]["distance_mm"].as_f64().unwrap())
+    };
+    let right = distances(&["rig.toml"]);
+    let off = |found: [f64; 2]| (found[0] - right[0]).abs().max((found[1] - right[1]).abs());
+    assert!(off(distances(&["far.toml"])) > 40.0);
+    let seen = off(distances(&["far.toml", "take", "--mask"]));
+    assert!(seen < 20.0, "{seen} mm");
+
+    for frame in 0..3 {
+        for camera in CAMERAS {
+            let black = image::GrayImage::new(120, 90);
+            desk.save(&format!("empty/{camera}/{frame}.png"), &black.into());
+        }
+    }
+    let outcome = run(desk.folder(), ["rig", "check", "far.toml", "empty", "--mask"]);
+    assert_eq!((outcome.code, outcome.out.as_str()), (Some(2), ""), "{}", outcome.err);
 }
 
 #[test]
