@@ -53,6 +53,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         let deviations = deviation_file(&take, arguments.names, unit)?;
         beside.write(deviations.as_bytes())?;
     }
+    let deviations = if kind == "mot" {
+        format!(" and {}", deviations_beside(out).display())
+    } else {
+        String::new()
+    };
+    eprintln!("phalanx: {} frames; {}{deviations}", take.frames.len(), out.display());
     let told = untold(&take, arguments, &kind);
     for text in &told {
         eprintln!("phalanx: {text}");

@@ -69,15 +69,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let files = [&arguments.take].into_iter().chain(&arguments.rig).chain(&arguments.timestamps);
     let output = Output::new(&arguments.out, &recordings.chain(files).collect::<Vec<_>>())?;
     let every = arguments.every.map(NonZeroUsize::get);
-    match kind.as_str() {
+    let written = match kind.as_str() {
         "html" => {
             let pictures = pictures(&take, &mut filmed)?;
             let page = view_page(&take, &take_file::name(&arguments.take), &pictures)?;
-            output.write(page.as_bytes())
+            output.write(page.as_bytes())?;
+            "page"
         }
-        "png" => output.write_png(&film::sheet(&take, &mut filmed, every)?),
-        _ => film::video(&take, &mut filmed, every.unwrap_or(1), &output),
-    }
+        "png" => {
+            output.write_png(&film::sheet(&take, &mut filmed, every)?)?;
+            "sheet"
+        }
+        _ => {
+            film::video(&take, &mut filmed, every.unwrap_or(1), &output)?;
+            "video"
+        }
+    };
+    let frames = take.frames.len();
+    eprintln!("phalanx: a {written} of a take of {frames} frames; {}", arguments.out.display());
+    Ok(())
 }
 
 /// The pictures of a page.

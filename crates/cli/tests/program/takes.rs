@@ -49,6 +49,16 @@ impl Folder {
         String::from_utf8(output.stdout).unwrap()
     }
 
+    /// Writes a file; where it is, is said in a line, and nothing is printed.
+    fn writes(&self, arguments: &[&str]) {
+        let output = self.run(arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success() && output.stdout.is_empty(), "{arguments:?}: {said}");
+        let out = arguments.iter().skip_while(|argument| **argument != "--out").nth(1).unwrap();
+        let is_told = said.starts_with("phalanx: ") && said.contains(&format!(" frames; {out}"));
+        assert!(is_told && said.lines().count() == 1, "{arguments:?}: {said}");
+    }
+
     fn refusal(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
         assert_eq!(output.status.code(), Some(2));
@@ -64,14 +74,14 @@ impl Folder {
 fn a_take_is_written_as_every_format_and_read_again() {
     let folder = Folder::new();
     for name in ["a.jsonl", "a.npz", "a.trc", "a.mot", "a.bvh", "a.c3d", "a.glb", "a.csv"] {
-        folder.printed(&["convert", "take.csv", "--out", name]);
+        folder.writes(&["convert", "take.csv", "--out", name]);
         assert!(folder.file(name).len() > 1000, "{name}");
     }
     assert_eq!(folder.file("a.csv"), folder.file("take.csv"));
     assert!(folder.file("a_std.sto").starts_with(b"Standard deviations"));
-    folder.printed(&["convert", "a.jsonl", "--out", "b.npz"]);
+    folder.writes(&["convert", "a.jsonl", "--out", "b.npz"]);
     assert_eq!(read_npz(&folder.file("b.npz")).unwrap().frames.len(), 30);
-    folder.printed(&["convert", "take.csv", "--out", "m.trc", "--unit", "m", "--axes", "xz-y"]);
+    folder.writes(&["convert", "take.csv", "--out", "m.trc", "--unit", "m", "--axes", "xz-y"]);
     assert!(String::from_utf8(folder.file("m.trc")).unwrap().contains("\tm\t"));
     std::fs::create_dir(folder.0.path().join("b_std.sto")).unwrap();
     let half = folder.refusal(&["convert", "take.csv", "--out", "b.mot"]);
@@ -84,7 +94,7 @@ fn a_take_is_written_as_every_format_and_read_again() {
 #[test]
 fn a_page_and_a_report_are_written() {
     let folder = Folder::new();
-    folder.printed(&["view", "take.csv", "--out", "take.html"]);
+    folder.writes(&["view", "take.csv", "--out", "take.html"]);
     assert!(folder.file("take.html").starts_with(b"<!doctype html>"));
     let text = folder.printed(&["report", "take.csv"]);
     assert!(text.contains("take: 29 of 30 frames count") && text.contains("index total"));
@@ -106,7 +116,7 @@ fn pictures_are_shown_with_joints_and_outline_of_the_hand() {
         image::RgbImage::new(40, 30).save(at("frames/top").join(frame)).unwrap();
     }
     let arguments = ["view", "take.csv", "--frames", "frames", "--rig", "rig.toml", "--out"];
-    folder.printed(&[&arguments[..], &["take.html"]].concat());
+    folder.writes(&[&arguments[..], &["take.html"]].concat());
     let page = String::from_utf8(folder.file("take.html")).unwrap();
     let (_, outlines) = page.split_once("\"outlines\":[\"").unwrap();
     let (outlines, _) = outlines.split_once("\"]").unwrap();
@@ -119,7 +129,7 @@ fn pictures_are_shown_with_joints_and_outline_of_the_hand() {
 
     // The same on a sheet, and as a video: two pictures of black, with an outline.
     let filmed = |others: &[&str]| {
-        folder.printed(&[&arguments[..arguments.len() - 1], others].concat());
+        folder.writes(&[&arguments[..arguments.len() - 1], others].concat());
     };
     filmed(&["--out", "sheet.png", "--every", "15"]);
     let sheet = image::open(at("sheet.png")).unwrap().to_rgb8();
@@ -158,7 +168,7 @@ fn the_outline_lies_on_the_hand_in_pictures_of_any_size() {
     std::fs::create_dir_all(at("frames/top")).unwrap();
     image::RgbImage::new(500, 300).save(at("frames/top/0.png")).unwrap();
     let frames = ["--frames", "frames", "--rig", "rig.toml", "--every", "40", "--out"];
-    folder.printed(&[&["view", "take.csv"][..], &frames, &["sheet.png"]].concat());
+    folder.writes(&[&["view", "take.csv"][..], &frames, &["sheet.png"]].concat());
     let sheet = image::open(at("sheet.png")).unwrap().to_rgb8();
     let hand = draw_mask(
         rig.camera("top").unwrap(),
@@ -196,7 +206,7 @@ fn a_page_needs_the_times_of_its_take() {
     std::fs::write(at("other.csv"), times.replace("7.1", "7.15")).unwrap();
     let given = ["view", "take.csv", "--frames", "top=frames/top", "--rig", "rig.toml"];
     let view = [&given[..], &["--out", "take.html"]].concat();
-    folder.printed(&[&view[..], &["--timestamps", "times.csv"]].concat());
+    folder.writes(&[&view[..], &["--timestamps", "times.csv"]].concat());
     let said = folder.refusal(&[&view[..], &["--timestamps", "other.csv"]].concat());
     assert!(said.contains("when the take was made"), "{said}");
     // Made by a clock, which pictures alone do not have.
@@ -212,7 +222,7 @@ fn a_page_needs_the_times_of_its_take() {
 fn json_is_printed_where_text_is() {
     let folder = Folder::new();
     let json = |arguments: &[&str]| -> serde_json::Value {
-        serde_json::from_str(&folder.printed(&[arguments, &["--json"]].concat())).unwrap()
+        serde_json::from_slice(&folder.run(&[arguments, &["--json"]].concat()).stdout).unwrap()
     };
     let converted = json(&["convert", "take.csv", "--out", "a.bvh"]);
     assert_eq!((&converted["file"], &converted["frames"]), (&"a.bvh".into(), &30.into()));
@@ -227,7 +237,7 @@ fn json_is_printed_where_text_is() {
 fn a_take_agrees_with_itself() {
     let folder = Folder::new();
     for name in ["reference.trc", "reference.jsonl", "reference.npz"] {
-        folder.printed(&["convert", "take.csv", "--out", name]);
+        folder.writes(&["convert", "take.csv", "--out", name]);
     }
     for reference in ["take.csv", "reference.trc", "reference.jsonl", "reference.npz"] {
         let text = folder.printed(&["evaluate", "take.csv", "--reference", reference]);
