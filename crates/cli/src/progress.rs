@@ -1,9 +1,10 @@
 //! Progress on a terminal.
 
+use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use phalanx::{Losses, Progress};
+use phalanx::{LossReason, Losses, Progress};
 
 /// A bar on standard error with the time that remains of the stage; nothing where standard error is no
 /// terminal. What a training loses is said in any case.
@@ -40,9 +41,29 @@ impl Progress for Bar {
     }
 
     fn lost(&self, losses: &Losses, scenes: usize) {
-        let lost = losses.count();
-        self.say(&format!("{lost} of {scenes} scenes could not be used: {losses}"));
+        let all = format!("{} of {scenes}", losses.count());
+        loss_lines(&all, losses).iter().for_each(|line| self.say(line));
     }
+}
+
+/// What a training lost, `all` being how many scenes: a sentence, and a line for each camera with its most
+/// frequent reason. Every reason with its first scene would be a line of many hundred characters.
+pub(crate) fn loss_lines(all: &str, losses: &Losses) -> Vec<String> {
+    let mut cameras: BTreeMap<&str, (usize, (usize, LossReason))> = BTreeMap::new();
+    for (camera, reason, scenes) in losses.iter() {
+        let (sum, most) = cameras.entry(camera).or_insert((0, (0, reason)));
+        *sum += scenes;
+        if scenes > most.0 {
+            *most = (scenes, reason);
+        }
+    }
+    let advice = "they do no harm unless they are many: then move the rig's volume to where its cameras look";
+    let first = format!("{all} scenes could not be used; {advice}");
+    let lines = cameras.into_iter().map(|(camera, (sum, (_, reason)))| {
+        let of = if camera.is_empty() { String::new() } else { format!("camera '{camera}': ") };
+        format!("{of}{sum} scenes, mostly: {reason}")
+    });
+    std::iter::once(first).chain(lines).collect()
 }
 
 impl Drop for Bar {

@@ -14,7 +14,7 @@ use crate::checkpoint::Checkpoint;
 use crate::forecast::Forecast;
 use crate::form::Form;
 use crate::input;
-use crate::progress::Bar;
+use crate::progress::{Bar, loss_lines};
 use crate::rig::check;
 use phalanx_cli::files::Output;
 use phalanx_cli::parts;
@@ -192,7 +192,8 @@ fn finish(
     drop(forecast);
     let lost = part.losses();
     if lost.count() > 0 {
-        eprintln!("phalanx: {} scenes could not be used: {lost}", lost.count());
+        let lines = loss_lines(&lost.count().to_string(), lost);
+        lines.iter().for_each(|line| eprintln!("phalanx: {line}"));
     }
     let bytes = part.to_bytes()?;
     out.write(&bytes)?;
