@@ -1,14 +1,10 @@
 //! Why no hand is found in a picture.
 
-use image::{Rgb, RgbImage};
+use image::RgbImage;
 use phalanx::{Cause, Error, Estimator, LossReason, Segmenter};
 use phalanx_segmentation::Error as Reason;
 
-use crate::segment::Prepared;
-
-/// The greatest difference between the channels of a pixel without colour, levels: what a JPEG file's
-/// rounding makes of a grey one.
-const GREY: u8 = 8;
+use crate::segment::{GREY, Prepared, is_grey};
 
 /// The error of an estimate from pictures. Where no hand was found, it says what the picture is like.
 pub(crate) fn explained(
@@ -45,12 +41,9 @@ fn like(picture: &Prepared<'_>, is_empty: bool) -> Option<&'static str> {
 }
 
 fn cause(photograph: &RgbImage) -> &'static str {
-    let is_grey = |Rgb([red, green, blue]): &Rgb<u8>| {
-        red.max(green).max(blue) - red.min(green).min(blue) <= GREY
-    };
     let sum =
         |channel: usize| photograph.pixels().map(|pixel| u64::from(pixel[channel])).sum::<u64>();
-    if photograph.pixels().all(is_grey) {
+    if photograph.pixels().all(|pixel| is_grey(pixel, GREY)) {
         "the picture has no colour, and skin is found by its colour: give colour photographs, or masks \
          with --mask, or see --segment"
     } else if sum(2) > sum(0) {

@@ -4,10 +4,17 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use image::{DynamicImage, Pixel, RgbImage};
+use image::{DynamicImage, Rgb, RgbImage};
 use phalanx::{Picture, Segment, Segmentation, Segmenter, mask_from, photograph_from};
 use phalanx_cli::reading;
 use phalanx_segmentation::{Mask, PlainBackground, SkinModel};
+
+/// The greatest difference between the channels of a pixel without colour, levels: what a JPEG file's
+/// rounding makes of a grey one.
+pub(crate) const GREY: u8 = 8;
+
+/// How far the black and white of masks are off after a lossy encoding, levels.
+const OFF_BLACK_AND_WHITE: u8 = 24;
 
 #[derive(Args, Clone, Default)]
 pub(crate) struct SegmentArguments {
@@ -74,7 +81,8 @@ impl Pictures {
         Ok(match self {
             Self::Masks => mask_from(picture),
             Self::Photographs(segmentation) => {
-                segmentation.of_camera(camera)?.segment(&photograph(picture)?)?
+                let segmenter = segmentation.of_camera(camera)?;
+                segmenter.segment(&photograph(picture, segmenter)?)?
             }
         })
     }
@@ -86,7 +94,7 @@ impl Pictures {
             let segmenter = segmentation.of_camera(camera)?;
             if !matches!(segmenter, Segmenter::Background(_)) {
                 let named = || format!("camera '{camera}'");
-                let photograph = photograph(picture).with_context(named)?;
+                let photograph = photograph(picture, segmenter).with_context(named)?;
                 return Ok(Prepared::Photograph(photograph, segmenter));
             }
         }
@@ -94,20 +102,42 @@ impl Pictures {
     }
 }
 
-/// A picture in colours.
+/// A picture in which the hand is looked for in this way.
 ///
 /// # Errors
 /// A picture that is a mask.
-fn photograph(picture: &DynamicImage) -> Result<RgbImage> {
+fn photograph(picture: &DynamicImage, segmenter: &Segmenter) -> Result<RgbImage> {
     let photograph = photograph_from(picture);
-    let is_of_a_mask = |level: &u8| [0, 255].contains(level);
-    let mut pixels = photograph.pixels();
-    let is_one_colour = pixels.clone().skip(1).all(|pixel| pixel == &photograph[(0, 0)]);
+    // A picture without colour shows no skin, so that nothing useful is refused. Before a plain background a
+    // bright hand may be nearly white.
+    let off = if matches!(segmenter, Segmenter::Skin(_)) { OFF_BLACK_AND_WHITE } else { 0 };
     ensure!(
-        is_one_colour || !pixels.all(|pixel| pixel.channels().iter().all(is_of_a_mask)),
+        !is_like_a_mask(&photograph, off),
         "it is black and white, as masks are: for masks, give --mask"
     );
     Ok(photograph)
+}
+
+/// Whether a picture has black and white and little else, each to within so many levels: videos and JPEG
+/// files of masks are blurred where black meets white.
+fn is_like_a_mask(photograph: &RgbImage, off: u8) -> bool {
+    let grey = if off == 0 { 0 } else { GREY };
+    let (mut black, mut white) = (0_usize, 0_usize);
+    for pixel in photograph.pixels() {
+        if !is_grey(pixel, grey) {
+            return false;
+        }
+        black += usize::from(pixel.0[0] <= off);
+        white += usize::from(pixel.0[0] >= 255 - off);
+    }
+    let others = photograph.pixels().len() - black - white;
+    let most = if off == 0 { 0 } else { photograph.pixels().len() / 10 };
+    black > 0 && white > 0 && others <= most
+}
+
+/// Whether the channels of a pixel differ by no more than so many levels.
+pub(crate) fn is_grey(Rgb([red, green, blue]): &Rgb<u8>, most: u8) -> bool {
+    red.max(green).max(blue) - red.min(green).min(blue) <= most
 }
 
 impl Prepared<'_> {

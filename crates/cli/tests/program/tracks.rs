@@ -94,12 +94,26 @@ fn wrong_use_is_refused_by_name() {
     desk.save(&format!("take/{}/0000.png", CAMERAS[0]), &image::DynamicImage::new_luma8(90, 120));
     let outcome = track(&desk, &["take", "--out", "t.csv"]);
     assert!(outcome.err.contains("is it turned or cropped?"), "{outcome:?}");
-    // Masks are no photographs.
+}
+
+/// Masks are no photographs, also where a video or a JPEG file has blurred them.
+#[test]
+fn masks_without_their_option_are_told() {
     let desk = recorded(2);
-    let outcome = run(desk.folder(), ["track", "--rig", "rig.toml", "take", "--out", "t.csv"]);
-    assert_eq!(outcome.code, Some(2), "{outcome:?}");
-    assert!(outcome.err.contains("none of the 4 pictures can be used"), "{outcome:?}");
-    assert!(outcome.err.contains("give --mask"), "{outcome:?}");
+    let refuses = || {
+        let outcome = run(desk.folder(), ["track", "--rig", "rig.toml", "take", "--out", "t.csv"]);
+        assert_eq!(outcome.code, Some(2), "{outcome:?}");
+        assert!(outcome.err.contains("none of the 4 pictures can be used"), "{outcome:?}");
+        assert!(outcome.err.contains("give --mask"), "{outcome:?}");
+    };
+    refuses();
+    for (camera, frame) in CAMERAS.iter().flat_map(|camera| [(camera, 0), (camera, 1)]) {
+        let name = format!("take/{camera}/{frame:04}");
+        let mask = desk.open(&format!("{name}.png")).to_rgb8();
+        mask.save(desk.path(&format!("{name}.jpg"))).unwrap();
+        std::fs::remove_file(desk.path(&format!("{name}.png"))).unwrap();
+    }
+    refuses();
 }
 
 #[test]
