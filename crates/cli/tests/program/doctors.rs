@@ -2,10 +2,12 @@
 
 use std::process::Command;
 
+use phalanx::draw_silhouette;
 use phalanx_camera::{Intrinsics, Rig};
+use phalanx_hand::HandShape;
 use serde_json::Value;
 
-use crate::desk::{Desk, Outcome, run};
+use crate::desk::{Desk, Outcome, closing, run};
 
 fn doctor(desk: &Desk, arguments: &[&str]) -> (Option<i32>, Value) {
     let outcome = run(desk.folder(), ["doctor", "--json"].iter().chain(arguments));
@@ -88,6 +90,38 @@ fn what_does_not_fit_is_broken_by_name() {
 
     let (code, report) = doctor(&desk, &["--rig", "nowhere.toml", "--model", "rig.toml"]);
     assert_eq!((code, in_state(&report, "broken").len()), (Some(2), 2), "{report:#}");
+}
+
+/// What `track` doubts of a view, here fingers beyond the border, is doubted before.
+#[test]
+fn a_view_that_would_be_doubted_is_doubted() {
+    let desk = Desk::new();
+    desk.write_rig("rig.toml");
+    let mut rig = Rig::from_toml(&String::from_utf8(desk.read("rig.toml")).unwrap()).unwrap();
+    let joints = Desk::points(0.0)[1].map(glam::DVec2::from_array);
+    let reach = |joint: &glam::DVec2| (*joint - joints[0]).length();
+    let tip = joints.into_iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).unwrap();
+    let along = (tip - joints[0]).normalize();
+    let room = |at: f64, along: f64, end: f64| (if along > 0.0 { end - at } else { -at }) / along;
+    let beyond = room(tip.x, along.x, 120.0).min(room(tip.y, along.y, 90.0)) + 20.0;
+    let shift = beyond * along;
+    let own = rig.cameras[1].intrinsics;
+    let moved = Intrinsics { cx: own.cx + shift.x, cy: own.cy + shift.y, ..own };
+    rig.cameras[1] = rig.cameras[1].with_intrinsics(moved);
+    desk.write("cut.toml", rig.to_toml().unwrap().as_bytes());
+    let (hand, rest) = (HandShape::adult(), rig.volume.rest_frame());
+    for frame in 0..8 {
+        // Open, since a fist would be within the border.
+        let closed = 0.03 * f64::from(frame);
+        desk.draw_frame("take", &format!("{frame}.png"), closed);
+        let pose = closing(closed);
+        let mask = draw_silhouette(&rig.cameras[1], &hand, &pose, &rest).unwrap();
+        desk.save(&format!("take/{}/{frame}.png", rig.cameras[1].name), &mask.into());
+    }
+    let (code, report) = doctor(&desk, &["--rig", "cut.toml", "take", "--mask"]);
+    assert_eq!(code, Some(0), "{report:#}");
+    let doubts = in_state(&report, "doubt").join("\n");
+    assert!(doubts.contains("camera 'top'") && doubts.contains("cut off, at "), "{report:#}");
 }
 
 /// A camera of three that stands elsewhere than the calibration says is told from the two others.
