@@ -43,7 +43,7 @@ fn like(picture: &Prepared<'_>, is_empty: bool) -> Option<&'static str> {
 fn cause(photograph: &RgbImage) -> &'static str {
     let sum =
         |channel: usize| photograph.pixels().map(|pixel| u64::from(pixel[channel])).sum::<u64>();
-    if photograph.pixels().all(|pixel| is_grey(pixel, GREY)) {
+    if photograph.pixels().all(|pixel| is_grey(*pixel, GREY)) {
         "the picture has no colour, and skin is found by its colour: give colour photographs, or masks \
          with --mask, or see --segment"
     } else if sum(2) > sum(0) {

@@ -42,7 +42,9 @@ impl Progress for Bar {
 
     fn lost(&self, losses: &Losses, scenes: usize) {
         let all = format!("{} of {scenes}", losses.count());
-        loss_lines(&all, losses).iter().for_each(|line| self.say(line));
+        for line in loss_lines(&all, losses) {
+            self.say(&line);
+        }
     }
 }
 

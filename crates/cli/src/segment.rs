@@ -124,7 +124,7 @@ fn is_like_a_mask(photograph: &RgbImage, off: u8) -> bool {
     let grey = if off == 0 { 0 } else { GREY };
     let (mut black, mut white) = (0_usize, 0_usize);
     for pixel in photograph.pixels() {
-        if !is_grey(pixel, grey) {
+        if !is_grey(*pixel, grey) {
             return false;
         }
         black += usize::from(pixel.0[0] <= off);
@@ -136,7 +136,7 @@ fn is_like_a_mask(photograph: &RgbImage, off: u8) -> bool {
 }
 
 /// Whether the channels of a pixel differ by no more than so many levels.
-pub(crate) fn is_grey(Rgb([red, green, blue]): &Rgb<u8>, most: u8) -> bool {
+pub(crate) fn is_grey(Rgb([red, green, blue]): Rgb<u8>, most: u8) -> bool {
     red.max(green).max(blue) - red.min(green).min(blue) <= most
 }
 

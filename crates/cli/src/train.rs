@@ -192,8 +192,9 @@ fn finish(
     drop(forecast);
     let lost = part.losses();
     if lost.count() > 0 {
-        let lines = loss_lines(&lost.count().to_string(), lost);
-        lines.iter().for_each(|line| eprintln!("phalanx: {line}"));
+        for line in loss_lines(&lost.count().to_string(), lost) {
+            eprintln!("phalanx: {line}");
+        }
     }
     let bytes = part.to_bytes()?;
     out.write(&bytes)?;
