@@ -123,6 +123,13 @@ impl FrameFitter<'_> {
         crop.exits.width_ahead_of(&palm) > LEAVES
     }
 
+    /// Whether that is so of a view that was used.
+    pub(super) fn is_cut_off(&self, found: &Found) -> bool {
+        let is_used = |view: &usize| found.crops[*view].is_some() && !found.left_out[*view];
+        let mut used = (0..found.crops.len()).filter(is_used);
+        used.any(|view| self.leaves_picture(found, view))
+    }
+
     /// How well a pose is known by the views that it was fitted to, each of the hand's proportions being known
     /// to a standard deviation; `None` where they leave it open.
     pub(super) fn posterior(&self, found: &Found, hand_std: &[f64]) -> Result<Option<Posterior>> {

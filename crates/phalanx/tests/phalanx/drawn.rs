@@ -50,12 +50,29 @@ pub(crate) fn drawn(count: usize) -> Drawn {
 
 /// The same of another hand.
 pub(crate) fn drawn_of(hand: &HandShape, count: usize) -> Drawn {
+    drawn_in(hand, (0..count).map(pose))
+}
+
+/// The same of a hand that comes along its arm, from so many frames away.
+pub(crate) fn drawn_coming(hand: &HandShape, count: usize, away: usize) -> Drawn {
+    /// How far it comes from frame to frame, mm.
+    const STEP: f64 = 60.0;
+    let coming = |frame: usize| {
+        let mut pose = pose(frame);
+        pose[Dof::TZ] -= STEP * away.saturating_sub(frame) as f64;
+        pose
+    };
+    drawn_in(hand, (0..count).map(coming))
+}
+
+/// A hand in some poses.
+fn drawn_in(hand: &HandShape, poses: impl Iterator<Item = Pose>) -> Drawn {
     let (cameras, rest) = (cameras(), DAffine3::IDENTITY);
     let mut renderers: Vec<Renderer> =
         cameras.iter().map(|camera| Renderer::new(camera).expect("a camera")).collect();
     let (mut frames, mut joints) = (Vec::new(), Vec::new());
-    for frame in 0..count {
-        let posed = hand.pose(&pose(frame), &rest);
+    for pose in poses {
+        let posed = hand.pose(&pose, &rest);
         let mut mask = |renderer: &mut Renderer| {
             let drawn = renderer.silhouette(&posed.primitives);
             Some(drawn.expect("a hand before the camera").into())

@@ -10,7 +10,7 @@ use phalanx_camera::{Camera, Extrinsics, Intrinsics};
 use phalanx_hand::{Dof, HandShape, Pose, Side};
 use phalanx_segmentation::Mask;
 
-use crate::drawn::{Drawn, cameras, drawn, drawn_of, hand, mean_error};
+use crate::drawn::{Drawn, cameras, drawn, drawn_coming, drawn_of, hand, mean_error};
 
 #[test]
 fn a_take_is_fitted_from_masks_alone() {
@@ -283,6 +283,22 @@ fn the_size_of_a_childs_hand_is_found_as_soon_as_two_cameras_see_it() {
             assert_eq!((ratio - 1.0).abs() < 0.07, k >= first, "frame {k}: {ratio}");
             assert!(k != first || error < 5.0, "frame {k}: {error} mm");
         }
+    }
+}
+
+/// While it comes only fingers are seen, which a small hand's arm explains as well.
+#[test]
+fn a_hand_that_comes_into_the_pictures_is_learnt_once_they_show_all_of_it() {
+    const AWAY: usize = 6;
+    let Drawn { cameras, frames, joints } = drawn_coming(&hand(), 10, AWAY);
+    let settings = TrackSettings { delay: Delay::None, ..TrackSettings::default() };
+    let mut tracker = Tracker::new(&cameras, &settings).expect("a hand");
+    for (k, (frame, truth)) in frames.iter().zip(&joints).enumerate() {
+        let tracked = tracker.push(k as f64 / 30.0, frame).expect("a frame").expect("no delay");
+        let Some(fit) = tracked.fit else { continue };
+        let error = mean_error(&fit.joints, truth);
+        assert!(error < 15.0 || !fit.doubts.is_empty(), "frame {k}: {error} mm, undoubted");
+        assert!(error < 15.0 || k < AWAY, "frame {k}: {error} mm");
     }
 }
 

@@ -262,8 +262,8 @@ impl Tracker {
             return Ok(next);
         }
         own_hand.look();
-        // Of a hand that comes into the pictures only part is seen, which fits a smaller one.
-        if !views::is_right(&self.fitter(&self.searching), found)? {
+        // Of a hand that comes into the pictures only part is seen, which tells nothing of its size.
+        if self.fitter(&self.searching).is_cut_off(found) {
             return Ok(next);
         }
         let place = found.frame(self.hand());
