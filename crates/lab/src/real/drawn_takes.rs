@@ -9,11 +9,12 @@ use clap::Args;
 use glam::{DAffine3, DVec3};
 use phalanx::{ItemRng, Mask, MaskNoise};
 use phalanx_camera::{Camera, Intrinsics, Volume};
-use phalanx_hand::{Dof, HandShape, Pose, Primitive, Side, Sphere, sample_pose};
+use phalanx_hand::{Dof, HandShape, Pose, Primitive, Side, sample_pose};
 use phalanx_render::Renderer;
 use rayon::prelude::*;
 use serde_json::json;
 
+use super::company::{Company, other_hand, rod};
 use crate::files;
 
 #[derive(Args)]
@@ -53,16 +54,6 @@ enum Motion {
     Passing(usize),
 }
 
-/// What is drawn beside the hand.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Company {
-    None,
-    /// The person's other hand, which moves as it likes.
-    OtherHand,
-    /// A rod across the palm.
-    Rod,
-}
-
 const KINDS: [Kind; 10] = [
     kind("one", 1, (640, 480)),
     kind("two", 2, (640, 480)),
@@ -83,12 +74,6 @@ const fn kind(name: &'static str, cameras: usize, picture: (u32, u32)) -> Kind {
 
 /// How far behind where it works a hand is that comes or leaves, mm: no picture shows it.
 const AWAY: f64 = 500.0;
-
-/// How far beside a hand the other one is, mm.
-const BESIDE: f64 = 150.0;
-
-/// Half the length of a rod and its radius, mm, and how far its middle is from the palm's.
-const ROD: [f64; 3] = [70.0, 10.0, 25.0];
 
 /// How far bones and radii differ from the mean adult's, beside the size.
 const SPREAD: f64 = 0.1;
@@ -238,28 +223,15 @@ impl DrawnTake {
     /// What there is to see in a frame.
     fn solids(&self, frame: usize) -> Vec<Primitive> {
         let posed = self.hand.pose(&self.poses[frame], &self.rest);
-        let mut solids = posed.primitives;
+        let mut solids = posed.primitives.clone();
         match self.company {
             Company::None => {}
             Company::OtherHand => {
-                let side = match self.hand.side {
-                    Side::Left => Side::Right,
-                    Side::Right => Side::Left,
-                };
-                let other = HandShape { side, ..self.hand.clone() };
-                let beside = self.rest * DAffine3::from_translation(BESIDE * DVec3::X);
-                solids.extend(other.pose(&self.other_poses[frame], &beside).primitives);
+                solids.extend(other_hand(&self.hand, &self.other_poses[frame], &self.rest));
             }
             Company::Rod => {
-                let [index, little] = [5, 17].map(|knuckle| posed.joints[knuckle]);
-                let along = (little - index).normalize();
-                let forward = (index.midpoint(little) - posed.joints[0]).normalize();
                 let back = self.rest.matrix3 * self.poses[frame].rotation() * DVec3::Y;
-                let normal = along.cross(forward);
-                let palmar = normal * -normal.dot(back).signum();
-                let middle = index.midpoint(little) + ROD[2] * palmar;
-                let end = |way: f64| Sphere::new(middle + way * ROD[0] * along, ROD[1]);
-                solids.push(Primitive::RoundCone([end(-1.0), end(1.0)]));
+                solids.push(rod(&posed, back));
             }
         }
         solids

@@ -4,6 +4,7 @@
 //! calibration alone; references score, and nothing else.
 
 pub mod angles;
+mod company;
 pub mod constant;
 pub(crate) mod contact_sheet;
 pub mod deviation;

@@ -174,6 +174,7 @@ impl FrameFitter<'_> {
         if Evidence::from(&evidence).is_empty() {
             return Ok(Vec::new());
         }
+        let used = views_used(&found.crops, &found.points, left_out);
         let own = found.pose_in(&rest, self.hand);
         let mut starts = vec![own];
         starts.extend(others.iter().map(|other| other.pose_in(&rest, self.hand)));
@@ -182,11 +183,13 @@ impl FrameFitter<'_> {
             Postures::Each(poses) => {
                 starts.extend(poses.iter().map(|digits| starts::with_digits(&own, digits)));
                 starts.extend(starts::each_digit(&own));
-                starts.extend(starts::exchanged(&own));
+                // One view hardly tells fingers from each other: any of several orders fits it.
+                if used > 1 {
+                    starts.extend(starts::exchanged(&own));
+                }
             }
             Postures::All => starts.extend(starts::postures(&own)),
         }
-        let used = views_used(&found.crops, &found.points, left_out);
         let hypothesis = |refined: PoseFit| Found {
             rest,
             misfit: misfit::of_fit(&refined, used),
