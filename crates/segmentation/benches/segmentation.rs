@@ -27,7 +27,7 @@ fn steps(criterion: &mut Criterion) {
     let small = scene(120, 90);
     let model = SkinModel::builtin();
     let mut raw = Mask::default();
-    model.segment_into(&small, &mut raw);
+    model.classify_into(&small, &mut raw);
     let (cleanup, mut workspace) = (Cleanup::default(), Workspace::default());
     let mut cleaned = Mask::default();
     clean_into(&raw, &cleanup, &mut workspace, &mut cleaned).expect("there is a hand");
@@ -37,7 +37,7 @@ fn steps(criterion: &mut Criterion) {
         b.iter(|| downsample(black_box(&photograph), 120, 90));
     });
     criterion.bench_function("skin 120x90", |b| {
-        b.iter(|| model.segment_into(black_box(&small), &mut raw));
+        b.iter(|| model.classify_into(black_box(&small), &mut raw));
     });
     criterion.bench_function("bright wall 120x90", |b| {
         b.iter(|| PlainBackground::Bright.segment(black_box(&small)));
@@ -51,7 +51,7 @@ fn steps(criterion: &mut Criterion) {
     });
     criterion.bench_function("colour to silhouette 120x90", |b| {
         b.iter(|| {
-            model.segment_into(black_box(&small), &mut raw);
+            model.classify_into(black_box(&small), &mut raw);
             clean_into(&raw, &cleanup, &mut workspace, &mut cleaned)?;
             silhouette.extract_into(&cleaned, &mut workspace)
         });

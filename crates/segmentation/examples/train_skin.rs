@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn right(model: &SkinModel, examples: &[(RgbImage, Mask)]) -> f64 {
     let (mut right, mut all) = (0, 0);
     for (picture, mask) in examples {
-        let found = model.segment(picture);
+        let found = model.classify(picture);
         right += found
             .iter()
             .zip(mask.iter())

@@ -72,7 +72,7 @@ pub(super) fn run(lab: &Lab<'_>, folder: &Path) -> Result<Photographed> {
     let gallery = Gallery::draw(lab)?;
     let masks: [(&str, Segment); 2] = [
         ("saturation", saturation::reference_mask),
-        ("skin colour", |image| Some(SkinModel::builtin().segment(image))),
+        ("skin colour", |image| Some(SkinModel::builtin().classify(image))),
     ];
     let signs: Vec<usize> = photographs.iter().map(|photograph| photograph.signed).collect();
     let (mut scores, mut answers) = (Vec::new(), Vec::new());

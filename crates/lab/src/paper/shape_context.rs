@@ -167,7 +167,7 @@ fn rendered(lab: &Lab<'_>) -> Result<Subject> {
     let small = downsample(&photograph, WORKING_SIZE.0, WORKING_SIZE.1)?;
     Ok(Subject {
         words: "rendered photograph",
-        mask: SkinModel::builtin().segment(&small),
+        mask: SkinModel::builtin().classify(&small),
         reference: draw_silhouette(camera, &lab.hand, &pose, &rest)?,
         means: "the exact silhouette",
         tip: Tip::Near(tip),
@@ -182,7 +182,7 @@ fn real(folder: &std::path::Path) -> Result<Subject> {
     let reference = saturation::reference_mask(&photograph);
     Ok(Subject {
         words: "real photograph",
-        mask: SkinModel::builtin().segment(&photograph),
+        mask: SkinModel::builtin().classify(&photograph),
         reference: reference.with_context(|| format!("{name} is saturated nowhere"))?,
         means: "its mask by saturation",
         tip: Tip::Furthest,

@@ -48,8 +48,10 @@ const MIXED: usize = 2;
 ///     })
 /// });
 /// let model = SkinModel::builtin();
+/// assert!(!model.classify(&picture).is_hand(40, 30));
 /// let mask = AdaptedSkin::new(&model, &picture).segment(&picture);
 /// assert!(mask.is_hand(40, 30) && !mask.is_hand(5, 30));
+/// assert_eq!(model.segment(&picture), mask); // the same
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct AdaptedSkin {
@@ -63,7 +65,7 @@ impl AdaptedSkin {
         let (colours, _) = picture.as_raw().as_chunks::<3>();
         let cells: Vec<usize> = colours.iter().map(|&rgb| cell_of(rgb)).collect();
         let general = General::of(model);
-        let mut levels = model.segment(picture).into_image().into_raw();
+        let mut levels = model.classify(picture).into_image().into_raw();
         let mut adapted = Self { table: Vec::new() };
         for _ in 0..ROUNDS {
             let sure = SurePixels::of(levels, picture.width() as usize);

@@ -6,7 +6,6 @@ use image::RgbImage;
 
 use crate::error::Result;
 use crate::mask::Mask;
-use crate::masking::adapted_skin::AdaptedSkin;
 use crate::masking::background::BackgroundModel;
 use crate::masking::plain_background::PlainBackground;
 use crate::masking::skin::SkinModel;
@@ -44,10 +43,10 @@ pub trait Segment: Debug + Send + Sync {
     fn segment(&self, picture: &RgbImage) -> Result<Mask>;
 }
 
-/// By the colour of skin (§ 2 of the paper), [adapted](AdaptedSkin) to each picture.
+/// By the colour of skin, the model adapted to each picture.
 impl Segment for SkinModel {
     fn segment(&self, picture: &RgbImage) -> Result<Mask> {
-        Ok(AdaptedSkin::new(self, picture).segment(picture))
+        Ok(Self::segment(self, picture))
     }
 }
 

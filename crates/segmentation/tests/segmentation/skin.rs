@@ -67,7 +67,7 @@ proptest! {
         }
         let image = RgbImage::from_pixel(3, 2, Rgb(rgb));
         let expected = if model.is_skin(rgb) { 255 } else { 0 };
-        prop_assert!(model.segment(&image).iter().all(|&level| level == expected));
+        prop_assert!(model.classify(&image).iter().all(|&level| level == expected));
     }
 }
 
@@ -103,9 +103,9 @@ fn learns_from_an_image_and_its_mask() {
     let mismatch = trainer.add_image(&image, &Mask::new(4, 8));
     assert!(matches!(mismatch, Err(Error::SizeMismatch { found: (4, 8), .. })));
     let model = trainer.finish("one image").unwrap();
-    assert_eq!(model.segment(&image), mask);
+    assert_eq!(model.classify(&image), mask);
     let mut used = Mask::default();
-    model.segment_into(&image, &mut used);
+    model.classify_into(&image, &mut used);
     assert_eq!(used, mask);
     assert!(!model.is_skin([0, 255, 0]), "a colour far from both classes");
 }

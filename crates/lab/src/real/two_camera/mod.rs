@@ -211,7 +211,7 @@ fn look_at(rig: &Rig, take: &Take) -> Result<Vec<Look>> {
         let image = |camera: &TakeCamera| camera.picture(&frame, Input::Photographs);
         let images = take.cameras.iter().map(|camera| Ok(image(camera)?.to_rgb8()));
         let images: Vec<RgbImage> = images.collect::<Result<_>>()?;
-        let masks: Vec<Mask> = images.iter().map(|image| skin.segment(image)).collect();
+        let masks: Vec<Mask> = images.iter().map(|image| skin.classify(image)).collect();
         let seen = see(rig, &masks, &mut finder, last);
         let look = Look { name: frame.to_string(), images, masks, seen };
         last = look.seen.as_ref().ok().filter(|_| is_whole(&look)).map(|seen| seen.wrist);
