@@ -117,7 +117,7 @@ fn central(frames: &[DAffine3], reach: f64) -> Option<DAffine3> {
 }
 
 /// How far one hand's frame is from another's: the angle of its turn, and its way over `reach`, mm.
-fn apart(one: &DAffine3, other: &DAffine3, reach: f64) -> f64 {
+pub(super) fn apart(one: &DAffine3, other: &DAffine3, reach: f64) -> f64 {
     let turn = DQuat::from_mat3(&(one.matrix3.transpose() * other.matrix3));
     let angle = 2.0 * turn.w.abs().min(1.0).acos();
     one.translation.distance(other.translation) / reach + angle

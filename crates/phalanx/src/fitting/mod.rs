@@ -20,6 +20,7 @@ mod proportions;
 mod repertoire;
 mod report;
 mod search;
+mod single;
 mod size;
 mod starts;
 mod take;
@@ -32,7 +33,8 @@ mod wrong_view;
 
 pub use consensus::VolumeEstimate;
 pub use report::{FitDoubt, FrameFit, LandmarkFit, Missing, ViewFit};
-pub use take::{Proportions, TakeFit, TakeSettings, fit_frame, fit_take};
+pub use single::fit_frame;
+pub use take::{Proportions, TakeFit, TakeSettings, fit_take};
 pub use take_frame::TakeFrame;
 pub use tracking::{Delay, TrackSettings, TrackedFrame, Tracker, TrackerState};
 pub use volume::estimate_volume;

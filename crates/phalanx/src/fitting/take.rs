@@ -12,11 +12,10 @@ use super::found::Found;
 use super::frame_fit::{FrameFitter, WORTH_ANOTHER};
 use super::knowledge::ViewKnowledge;
 use super::misfit;
-use super::observation::{Sight, fitted_hand};
+use super::observation::fitted_hand;
 use super::passes;
 use super::proportions::{self, HandEvidence, KnownHand};
 use super::report::{FrameFit, Reporter};
-use super::search;
 use super::size;
 use super::starts;
 use super::take_frame::TakeFrame;
@@ -116,30 +115,6 @@ pub fn fit_take(
     let hand = HandShape { forearm, ..take.hand.shape.clone() };
     let known = Known { hand: take.hand, weights: take.weights };
     Ok(TakeFit { hand, volume, frames, known })
-}
-
-/// Fits one frame of a hand that a take was fitted to, before the same cameras.
-///
-/// # Errors
-/// Another number of masks or landmarks than cameras, or no camera that sees a hand.
-pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Result<FrameFit> {
-    let (prior, refinement) = (starts::pose_prior()?, consensus::refinement());
-    let Known { hand, weights } = &take.known;
-    let fitter = |weights| FrameFitter {
-        hand: &hand.shape,
-        prior: &prior,
-        refinement: &refinement,
-        weights,
-    };
-    let relative = fitter(weights.relative());
-    let rest = take.volume.volume.rest_frame();
-    let sight = Sight::of(cameras, frame)?;
-    let found = search::near(&relative, &sight, &[rest])?.ok_or(Error::NoHand)?;
-    let relative = FrameFitter { refinement: &consensus::near(cameras.len()), ..relative };
-    let found = relative.improved(found)?;
-    let found = views::without_disagreeing(&relative, &found)?;
-    let fitter = &fitter(weights.clone());
-    Reporter { cameras, fitter, hand, rest }.report(&found)
 }
 
 /// A take that is being fitted.

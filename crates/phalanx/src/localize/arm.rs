@@ -1,7 +1,9 @@
 //! How far an arm is known.
 
 use glam::{DVec2, DVec3};
+use image::Luma;
 use phalanx_camera::Camera;
+use phalanx_segmentation::Mask;
 
 /// An arm: from where on, behind the wrist, nothing is known of it. It may go on, end in a sleeve or
 /// at a cut.
@@ -21,6 +23,9 @@ const FAR: f64 = 250.0;
 /// Sine of the angle between arm and view from which on all behind the cut is arm: where the arm is
 /// seen more from the side than from its end.
 const SIDEWAYS: f64 = 0.5;
+
+/// How far beside what is seen its background is known, px: borders have a pixel of it on their other side.
+const BESIDE: u32 = 2;
 
 /// The part of a camera's picture in which nothing is known because of an arm.
 #[derive(Debug, Clone, Copy)]
@@ -73,8 +78,35 @@ impl Arm {
 }
 
 impl Covered {
-    /// Whether nothing is known of a pixel.
-    pub(super) fn covers(&self, pixel: DVec2) -> bool {
+    /// Where nothing is known in a mask: all that is covered, but for what is seen there apart from the arm, such as a
+    /// thumb that points back, and what is next to that.
+    pub(super) fn hidden(&self, mask: &Mask) -> Mask {
+        let (width, height) = mask.dimensions();
+        let middle = |x: u32, y: u32| DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+        let covered = Mask::from_fn(width, height, |x, y| self.covers(middle(x, y)));
+        let seen = |x: u32, y: u32| covered.is_hand(x, y) && mask.is_hand(x, y);
+        let apart = without_connected(Mask::from_fn(width, height, seen), |x, y| {
+            self.from_axis(middle(x, y)) < 1.0
+        });
+        let is_next_to = |x: u32, y: u32| {
+            let mut near = near(x, y, BESIDE, mask.dimensions());
+            near.any(|(x, y)| apart.is_hand(x, y))
+        };
+        let is_hidden = |x: u32, y: u32| {
+            let is_arm = seen(x, y) && !apart.is_hand(x, y);
+            covered.is_hand(x, y) && (is_arm || !is_next_to(x, y))
+        };
+        Mask::from_fn(width, height, is_hidden)
+    }
+
+    /// How far aside of the arm's axis a pixel is, px.
+    fn from_axis(&self, pixel: DVec2) -> f64 {
+        let along = (self.far - self.cut).normalize_or_zero();
+        along.perp_dot(pixel - self.cut).abs()
+    }
+
+    /// Whether a pixel is behind where the arm is cut, and may be of it.
+    fn covers(&self, pixel: DVec2) -> bool {
         let (along, offset) = (self.far - self.cut, pixel - self.cut);
         let length = along.length();
         if length < 1e-6 {
@@ -87,5 +119,62 @@ impl Covered {
         let share = (ahead / length).clamp(0.0, 1.0);
         let width = self.widths[0] + share * (self.widths[1] - self.widths[0]);
         ahead > 0.0 && (offset - along * share).length() < width
+    }
+}
+
+/// A mask without the components that hold a pixel of some.
+fn without_connected(mut mask: Mask, is_held: impl Fn(u32, u32) -> bool) -> Mask {
+    let size = mask.dimensions();
+    let all = (0..size.1).flat_map(|y| (0..size.0).map(move |x| (x, y)));
+    let mut front: Vec<(u32, u32)> =
+        all.filter(|&(x, y)| mask.is_hand(x, y) && is_held(x, y)).collect();
+    while let Some((x, y)) = front.pop() {
+        if mask.is_hand(x, y) {
+            mask.put_pixel(x, y, Luma([0]));
+            front.extend(near(x, y, 1, size));
+        }
+    }
+    mask
+}
+
+/// The pixels that are at most so many columns and rows away from one.
+fn near(
+    x: u32,
+    y: u32,
+    away: u32,
+    (width, height): (u32, u32),
+) -> impl Iterator<Item = (u32, u32)> {
+    let rows = y.saturating_sub(away)..=(y + away).min(height - 1);
+    rows.flat_map(move |y| {
+        (x.saturating_sub(away)..=(x + away).min(width - 1)).map(move |x| (x, y))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thumb_beside_an_arm_is_known_and_the_arm_is_not() {
+        let covered = Covered {
+            cut: DVec2::new(20.0, 30.0),
+            far: DVec2::new(20.0, 300.0),
+            widths: [30.0; 2],
+            is_half_plane: true,
+        };
+        // A palm above the cut, its arm below, a thumb that points down beside it.
+        let mask = Mask::from_fn(50, 60, |x, y| {
+            let arm = (12..28).contains(&x);
+            let thumb = (34..40).contains(&x) && (20..45).contains(&y);
+            arm || thumb || (y < 25 && (12..40).contains(&x))
+        });
+        let hidden = covered.hidden(&mask);
+        let known = |x: u32, y: u32| !hidden.is_hand(x, y);
+        assert!(known(20, 10), "the palm");
+        assert!(!known(20, 40) && !known(27, 50), "the arm");
+        assert!(!known(28, 50), "what is beside the arm");
+        assert!(known(36, 40) && known(36, 44), "the thumb");
+        assert!(known(41, 40) && known(36, 46), "what is beside the thumb");
+        assert!(!known(45, 40), "what may be a sleeve");
     }
 }

@@ -94,9 +94,11 @@ impl HandCrop {
     /// # Errors
     /// A mask without a border that is known.
     pub fn evidence(&self, arm: &Arm) -> Result<SilhouetteObservation> {
-        let covered = arm.seen_by(&self.camera);
-        let known =
-            |at: DVec2| self.inside.is_hand(at.x as u32, at.y as u32) && !covered.covers(at);
+        let hidden = arm.seen_by(&self.camera).hidden(&self.mask);
+        let known = |at: DVec2| {
+            let (x, y) = (at.x as u32, at.y as u32);
+            self.inside.is_hand(x, y) && !hidden.is_hand(x, y)
+        };
         let evidence = SilhouetteObservation::within(&self.camera, &self.mask, known)?;
         Ok(evidence.resampled(1.0 / self.grain))
     }

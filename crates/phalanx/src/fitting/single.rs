@@ -1,0 +1,66 @@
+//! One frame of a hand that is known.
+
+use glam::DAffine3;
+use phalanx_camera::Camera;
+
+use super::consensus;
+use super::found::Found;
+use super::frame_fit::{FrameFitter, Postures};
+use super::observation::Sight;
+use super::repertoire;
+use super::report::{FrameFit, Reporter};
+use super::search;
+use super::starts;
+use super::take::{Known, TakeFit};
+use super::take_frame::TakeFrame;
+use super::views;
+use crate::error::{Error, Result};
+
+/// Fits one frame of a hand that a take was fitted to, before the same cameras.
+///
+/// The hand is looked for where the take's hand works; where views agree less with it than they do in the take, also
+/// where single frames of the take have it.
+///
+/// # Errors
+/// Another number of masks or landmarks than cameras, or no camera that sees a hand.
+pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Result<FrameFit> {
+    let Known { hand, weights } = &take.known;
+    let prior = starts::pose_prior()?;
+    let fitter =
+        |refinement, weights| FrameFitter { hand: &hand.shape, prior: &prior, refinement, weights };
+    let (coarse, fine) = (consensus::refinement(), consensus::near(cameras.len()));
+    let searching = &fitter(&coarse, weights.relative());
+    let fitting = &fitter(&fine, weights.relative());
+    let sight = &Sight::of(cameras, frame)?;
+    let rest = take.volume.volume.rest_frame();
+    let mut found = near(searching, fitting, sight, &[rest])?.ok_or(Error::NoHand)?;
+    if !views::is_right(fitting, &found)? {
+        if let Some(other) = near(searching, fitting, sight, &repertoire::places(take))? {
+            found = better(found, other);
+        }
+        let shown = repertoire::postures(take);
+        let postures = Postures::Each(&shown);
+        if let Some(other) = fitting.again(&found, &found.left_out, &[], postures)? {
+            found = better(found, views::without_disagreeing(fitting, &other)?);
+        }
+    }
+    let fitter = &fitter(&coarse, weights.clone());
+    Reporter { cameras, fitter, hand, rest }.report(&found)
+}
+
+/// A frame looked for near some places, without the views that disagree.
+fn near(
+    searching: &FrameFitter<'_>,
+    fitting: &FrameFitter<'_>,
+    sight: &Sight,
+    places: &[DAffine3],
+) -> Result<Option<Found>> {
+    let Some(found) = search::near(searching, sight, places)? else { return Ok(None) };
+    let found = fitting.improved(found)?;
+    views::without_disagreeing(fitting, &found).map(Some)
+}
+
+/// The one that all views agree with better.
+fn better(one: Found, other: Found) -> Found {
+    if other.misfit_of_all_views() < one.misfit_of_all_views() { other } else { one }
+}
