@@ -38,19 +38,16 @@ const MIXED: usize = 2;
 /// use image::{Rgb, RgbImage};
 /// use phalanx_segmentation::{AdaptedSkin, SkinModel};
 ///
-/// // A hand, half of it in a shadow that hides its colour from the model, before a dark wall.
+/// // A hand that is darker towards its wrist, before a grey wall.
 /// let picture = RgbImage::from_fn(80, 60, |x, y| {
+///     let light = 1.0 - f64::from(y) / 120.0;
 ///     let is_hand = (20..60).contains(&x) && y >= 10;
-///     Rgb(match (is_hand, y < 50) {
-///         (true, true) => [205, 150, 125],
-///         (true, false) => [60, 43, 42],
-///         _ => [20, 22, 26],
-///     })
+///     let colour = if is_hand { [205.0, 150.0, 125.0] } else { [150.0, 155.0, 165.0] };
+///     Rgb(colour.map(|level| (light * level) as u8))
 /// });
 /// let model = SkinModel::builtin();
-/// assert!(!model.classify(&picture).is_hand(40, 30));
 /// let mask = AdaptedSkin::new(&model, &picture).segment(&picture);
-/// assert!(mask.is_hand(40, 30) && !mask.is_hand(5, 30));
+/// assert!(mask.is_hand(40, 15) && mask.is_hand(40, 55) && !mask.is_hand(5, 30));
 /// assert_eq!(model.segment(&picture), mask); // the same
 /// ```
 #[derive(Debug, Clone, PartialEq)]

@@ -152,7 +152,7 @@ impl SkinTrainer {
 ///
 /// let mut picture = RgbImage::from_pixel(4, 3, Rgb([90, 120, 160]));
 /// picture.put_pixel(2, 1, Rgb([205, 150, 125]));
-/// let mask = SkinModel::builtin().segment(&picture);
+/// let mask = SkinModel::builtin().classify(&picture);
 /// assert_eq!((mask[(2, 1)].0, mask[(0, 0)].0), ([255], [0]));
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
