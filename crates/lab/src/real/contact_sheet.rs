@@ -8,7 +8,7 @@ use clap::Args;
 use image::{RgbImage, imageops};
 use phalanx::{Describer, Estimator, Progress, Training, Workspace, draw_overlay, draw_silhouette};
 use phalanx_hand::{HandShape, Side};
-use phalanx_segmentation::{Cleanup, CropWindow, Mask, Silhouette, SkinModel, clean};
+use phalanx_segmentation::{AdaptedSkin, Cleanup, CropWindow, Mask, Silhouette, SkinModel, clean};
 use rayon::prelude::*;
 
 use crate::data::data_set::DataSet;
@@ -114,7 +114,7 @@ fn look_at(
     photographs
         .par_iter()
         .map_init(Eyes::default, |eyes, (name, image)| {
-            let raw = skin.segment(image);
+            let raw = AdaptedSkin::new(&skin, image).segment(image);
             let mut panel = enlarged(image);
             let failure = eyes.draw_estimate(&raw, estimator, &mut panel).err();
             progress.step();

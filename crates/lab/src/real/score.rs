@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use glam::{DVec2, DVec3};
 use image::DynamicImage;
 use phalanx_hand::JOINTS;
-use phalanx_segmentation::{Mask, SkinModel};
+use phalanx_segmentation::{AdaptedSkin, Mask, SkinModel};
 use rayon::prelude::*;
 
 use super::angles;
@@ -185,7 +185,8 @@ impl<'a> Scorer<'a> {
             return Ok(Some(mask.to_luma8().into()));
         }
         let photograph = camera.photograph(frame)?.as_ref().map(DynamicImage::to_rgb8);
-        Ok(photograph.map(|photograph| self.skin.segment(&photograph)))
+        Ok(photograph
+            .map(|photograph| AdaptedSkin::new(&self.skin, &photograph).segment(&photograph)))
     }
 
     /// The errors of the best constant for the joints of all frames, mm.

@@ -9,7 +9,7 @@ use image::DynamicImage;
 use phalanx::{FrameFit, Progress, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take};
 use phalanx_camera::Camera;
 use phalanx_hand::HandShape;
-use phalanx_segmentation::{Mask, SkinModel};
+use phalanx_segmentation::{AdaptedSkin, Mask, SkinModel};
 
 use super::method::{Found, Method, Outcome, Sequence, each_frame};
 use super::take::Input;
@@ -80,7 +80,7 @@ impl Fits {
                 Input::Masks | Input::MasksAndLandmarks => picture.to_luma8().into(),
                 Input::Photographs | Input::Landmarks => {
                     let photograph = picture.to_rgb8();
-                    self.skin.segment(&photograph)
+                    AdaptedSkin::new(&self.skin, &photograph).segment(&photograph)
                 }
             }
         };

@@ -70,7 +70,15 @@ pub(super) fn learn(
         return Ok(None);
     }
     let refinement = fitter.refinement.clone();
-    let calibration = BundleAdjustment { pose_fit: refinement, hand: POPULATION, cameras: None };
+    // Poses are fitted as if each place of the best view's border told as much as one that errs alone. Of borders that
+    // tell less, as much more is known of hands beside them.
+    let beside = border.independent.min(1.0).sqrt();
+    let hand = ShapePrior {
+        size: POPULATION.size * beside,
+        thickness: POPULATION.thickness * beside,
+        each: POPULATION.each * beside,
+    };
+    let calibration = BundleAdjustment { pose_fit: refinement, hand, cameras: None };
     let learnt_from = |frames: &[BundleFrame]| match calibration.run(mean, rest, frames) {
         Ok(calibrated) => Ok(Some(calibrated)),
         // What these frames leave open stays as it was.
@@ -95,7 +103,7 @@ pub(super) fn learn(
     let independent = border.independent.min(1.0) / (1.0 + (frames - 1.0) * border.persistent);
     // What the frames tell beside what is known of anyone's hand, as they err together.
     let honest = |(anyone, fitted): (f64, &f64)| {
-        let told = fitted.powi(-2) - anyone.powi(-2);
+        let told = fitted.powi(-2) - (beside * anyone).powi(-2);
         (independent * told.max(0.0) + anyone.powi(-2)).powf(-0.5)
     };
     let std = std.map(honest).collect();

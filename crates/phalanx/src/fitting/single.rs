@@ -6,7 +6,7 @@ use phalanx_camera::Camera;
 use super::consensus;
 use super::found::Found;
 use super::frame_fit::{FrameFitter, Postures};
-use super::observation::Sight;
+use super::observation::{Sight, length_mm};
 use super::repertoire;
 use super::report::{FrameFit, Reporter};
 use super::search;
@@ -15,6 +15,11 @@ use super::take::{Known, TakeFit};
 use super::take_frame::TakeFrame;
 use super::views;
 use crate::error::{Error, Result};
+
+/// So many places at most, and how far they are from each other at least, turns in radians and ways over half the hand's
+/// length: where a hand is looked for, starts are turned by twice as much.
+const PLACES: usize = 6;
+const SAME_PLACE: f64 = std::f64::consts::FRAC_PI_8;
 
 /// Fits one frame of a hand that a take was fitted to, before the same cameras.
 ///
@@ -35,10 +40,10 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
     let rest = take.volume.volume.rest_frame();
     let mut found = near(searching, fitting, sight, &[rest])?.ok_or(Error::NoHand)?;
     if !views::is_right(fitting, &found)? {
-        if let Some(other) = near(searching, fitting, sight, &repertoire::places(take))? {
+        if let Some(other) = near(searching, fitting, sight, &places(take))? {
             found = better(found, other);
         }
-        let shown = repertoire::postures(take);
+        let shown = repertoire::of_poses(right(take).map(|frame| frame.pose));
         let postures = Postures::Each(&shown);
         if let Some(other) = fitting.again(&found, &found.left_out, &[], postures)? {
             found = better(found, views::without_disagreeing(fitting, &other)?);
@@ -46,6 +51,20 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
     }
     let fitter = &fitter(&coarse, weights.clone());
     Reporter { cameras, fitter, hand, rest }.report(&found)
+}
+
+/// Frames of a take's hand that differ from each other most, the first being the take's middle.
+fn places(take: &TakeFit) -> Vec<DAffine3> {
+    let rest = take.volume.volume.rest_frame();
+    let frames = right(take).map(|frame| starts::frame_at(&frame.pose, &rest, &take.hand));
+    let reach = 0.5 * length_mm(&take.known.hand.shape);
+    let apart = |one: &DAffine3, other: &DAffine3| consensus::apart(one, other, reach);
+    repertoire::spread(std::iter::once(rest).chain(frames), apart, SAME_PLACE, PLACES)
+}
+
+/// Its frames that are not doubted.
+fn right(take: &TakeFit) -> impl Iterator<Item = &FrameFit> {
+    take.frames.iter().filter(|frame| frame.doubts.is_empty())
 }
 
 /// A frame looked for near some places, without the views that disagree.

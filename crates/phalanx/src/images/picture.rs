@@ -110,7 +110,7 @@ pub enum Segmenter {
 impl Segment for Segmenter {
     fn segment(&self, picture: &RgbImage) -> phalanx_segmentation::Result<Mask> {
         match self {
-            Self::Skin(model) => Ok(model.segment(picture)),
+            Self::Skin(model) => model.segment(picture),
             Self::Background(model) => model.segment(picture),
             Self::PlainBackground(background) => background.segment(picture),
         }

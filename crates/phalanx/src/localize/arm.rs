@@ -86,7 +86,7 @@ impl Covered {
         let covered = Mask::from_fn(width, height, |x, y| self.covers(middle(x, y)));
         let seen = |x: u32, y: u32| covered.is_hand(x, y) && mask.is_hand(x, y);
         let apart = without_connected(Mask::from_fn(width, height, seen), |x, y| {
-            self.from_axis(middle(x, y)) < 1.0
+            self.aside(middle(x, y)) < 1.0
         });
         let is_next_to = |x: u32, y: u32| {
             let mut near = near(x, y, BESIDE, mask.dimensions());
@@ -100,7 +100,7 @@ impl Covered {
     }
 
     /// How far aside of the arm's axis a pixel is, px.
-    fn from_axis(&self, pixel: DVec2) -> f64 {
+    fn aside(&self, pixel: DVec2) -> f64 {
         let along = (self.far - self.cut).normalize_or_zero();
         along.perp_dot(pixel - self.cut).abs()
     }

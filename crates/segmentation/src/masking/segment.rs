@@ -6,6 +6,7 @@ use image::RgbImage;
 
 use crate::error::Result;
 use crate::mask::Mask;
+use crate::masking::adapted_skin::AdaptedSkin;
 use crate::masking::background::BackgroundModel;
 use crate::masking::plain_background::PlainBackground;
 use crate::masking::skin::SkinModel;
@@ -43,10 +44,10 @@ pub trait Segment: Debug + Send + Sync {
     fn segment(&self, picture: &RgbImage) -> Result<Mask>;
 }
 
-/// By the colour of skin, the model adapted to each picture.
+/// By the colour of skin, the model [adapted](AdaptedSkin) to each picture.
 impl Segment for SkinModel {
     fn segment(&self, picture: &RgbImage) -> Result<Mask> {
-        Ok(Self::segment(self, picture))
+        Ok(AdaptedSkin::new(self, picture).segment(picture))
     }
 }
 

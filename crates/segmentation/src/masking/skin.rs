@@ -6,7 +6,6 @@ use crate::mask::Mask;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::masking::adapted_skin::AdaptedSkin;
 use crate::masking::chroma::chroma;
 use crate::masking::histogram::smooth;
 use crate::masking::label::Label;
@@ -226,14 +225,8 @@ impl SkinModel {
         self.table[self.parts.params.bin(rgb)] != 0
     }
 
-    /// The mask of skin, by the model [adapted](AdaptedSkin) to the picture: 255 where skin is, 0 elsewhere, as large as
-    /// the picture.
-    pub fn segment(&self, picture: &RgbImage) -> Mask {
-        AdaptedSkin::new(self, picture).segment(picture)
-    }
-
-    /// The mask of the pixels whose chroma is that of skin (§ 2 of the paper), each looked at alone: faster than
-    /// [`segment`](Self::segment), and less often right.
+    /// The mask of the pixels whose chroma is that of skin (§ 2 of the paper), each looked at alone. Its
+    /// [`Segment::segment`](crate::Segment::segment), which adapts the model to the picture, is right more often.
     pub fn classify(&self, image: &RgbImage) -> Mask {
         let mut mask = Mask::new(image.width(), image.height());
         self.fill(image, &mut mask);

@@ -6,7 +6,7 @@ use phalanx::TakeFrame;
 use phalanx_camera::{Camera, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
 use phalanx_render::{Appearance, Renderer};
-use phalanx_segmentation::{Mask, SkinModel};
+use phalanx_segmentation::{AdaptedSkin, Mask, SkinModel};
 use rayon::prelude::*;
 
 /// Frames a second, as of webcams.
@@ -59,7 +59,7 @@ impl Studio {
         let mask = |(view, camera): (usize, &Camera)| -> Result<Option<Mask>> {
             let seed = (number * self.cameras.len() + view) as u64;
             let photograph = Renderer::new(camera)?.shade(&solids, &self.appearance, seed)?;
-            Ok(Some(self.skin.segment(&photograph)))
+            Ok(Some(AdaptedSkin::new(&self.skin, &photograph).segment(&photograph)))
         };
         let masks = self.cameras.iter().enumerate().map(mask).collect::<Result<_>>()?;
         Ok(TakeFrame::of_masks(masks))
