@@ -126,7 +126,7 @@ impl Reporter<'_> {
             let Some(agreement) = agreements[view].filter(|_| !found.left_out[view]) else {
                 continue;
             };
-            if misfit::of_view(&agreement) > fitter.weights.limits[view] {
+            if misfit::of_view(&agreement) > 1.0 {
                 let Agreement { iou: overlap, unexplained } = agreement;
                 doubts.push(FitDoubt::PoorFit { view, unexplained, overlap });
             }
@@ -134,8 +134,7 @@ impl Reporter<'_> {
         for (view, unexplained) in views::points_unexplained(fitter, found)?.into_iter().enumerate()
         {
             let used = unexplained.filter(|_| !found.left_out_points(view));
-            let limit = fitter.weights.limits[views.len() + view];
-            if let Some(unexplained) = used.filter(|used| misfit::of_points(*used) > limit) {
+            if let Some(unexplained) = used.filter(|used| misfit::of_points(*used) > 1.0) {
                 doubts.push(FitDoubt::PoorLandmarks { view, unexplained });
             }
         }
