@@ -38,13 +38,19 @@ pub enum Error {
     NoHand,
     /// A frame that does not come after the one before it.
     #[error(
-        "a frame of {time} s comes after one of {before} s; frames are tracked in the order of time"
+        "a frame of {time} s comes after one of {before} s; frames are given in the order of time"
     )]
     FrameTime {
         /// Its time, seconds.
         time: f64,
         /// The time of the frame before it.
         before: f64,
+    },
+    /// A frame without a time, where the other frames have one or each needs one.
+    #[error("{} has no time; `TakeFrame::at` gives it one", frame_of(*.frame))]
+    NoFrameTime {
+        /// Its number in the take, from 0; `None` of a stream.
+        frame: Option<usize>,
     },
     /// A hand that would be behind a camera that sees it.
     #[error("camera '{camera}': the hand would be behind it")]
@@ -333,3 +339,7 @@ pub enum Error {
 
 /// A result of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+fn frame_of(number: Option<usize>) -> String {
+    number.map_or_else(|| "a frame".to_owned(), |number| format!("frame {number}"))
+}

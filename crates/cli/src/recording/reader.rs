@@ -16,6 +16,9 @@ use super::timeline::{Moment, Timeline};
 use super::{Recording, Stamp, timestamps};
 use crate::segment::Pictures;
 
+/// The rate that is assumed where frames have no times, Hz.
+const USUAL_RATE: f64 = 30.0;
+
 /// The seed by which some moments are drawn.
 const SUBSET_SEED: u64 = 0;
 
@@ -29,6 +32,10 @@ pub(crate) struct Reader<'a> {
     landmarks: Vec<Option<Vec<Option<Landmarks>>>>,
     pictures: &'a Pictures,
     pub(crate) timeline: Timeline,
+    /// When each moment was, s: by the cameras' clocks or, where they have none, by a rate.
+    pub(crate) times: Vec<f64>,
+    /// That rate, Hz, where the cameras have no clocks.
+    pub(crate) rate: Option<f64>,
 }
 
 impl<'a> Reader<'a> {
@@ -56,7 +63,18 @@ impl<'a> Reader<'a> {
         let stamps: Vec<&[Stamp]> = stamps.iter().map(AsRef::as_ref).collect();
         let timeline = Timeline::new(&stamps);
         check_shared(cameras, &stamps, &timeline)?;
-        Ok(Self { cameras, paths, tracks, recordings, landmarks, pictures, timeline })
+        let clock: Option<Vec<f64>> = timeline.moments.iter().map(|moment| moment.time).collect();
+        let rate = clock.is_none().then_some(USUAL_RATE);
+        let times = clock.unwrap_or_else(|| at_rate(timeline.moments.len(), USUAL_RATE));
+        Ok(Self { cameras, paths, tracks, recordings, landmarks, pictures, timeline, times, rate })
+    }
+
+    /// The same by another rate, Hz, where the cameras have no clocks.
+    pub(crate) fn with_rate(mut self, rate: f64) -> Self {
+        if self.rate.is_some() {
+            (self.times, self.rate) = (at_rate(self.times.len(), rate), Some(rate));
+        }
+        self
     }
 
     /// Goes back to the beginning.
@@ -105,8 +123,13 @@ impl<'a> Reader<'a> {
         if self.tracks.iter().all(Option::is_none) {
             landmarks.clear();
         }
-        TakeFrame { masks, landmarks }
+        TakeFrame { masks, landmarks, seconds: Some(self.times[moment]) }
     }
+}
+
+/// The times of so many moments at a rate, Hz.
+fn at_rate(count: usize, rate: f64) -> Vec<f64> {
+    (0..count).map(|k| k as f64 / rate).collect()
 }
 
 /// Refuses a camera all frames of which are of moments that no other has.

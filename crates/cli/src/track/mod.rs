@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let settings = (arguments.fitted_together(), &arguments.settings()?);
     let mut journal = Journal::beside(&out, Identity::of(arguments, &source)?);
     let bar = Bar::new();
-    let (hand, tally) = if recorded.times.len() <= settings.0 {
+    let (hand, tally) = if recorded.times().len() <= settings.0 {
         journal.read()?;
         let (hand, rows) = fitted(recorded, settings, (&out, kind), &bar)?;
         save(&hand)?;
@@ -91,7 +91,7 @@ fn streaming<'a>(
 ) -> Result<Streaming<'a>> {
     match journal.read()? {
         Some(point) if Rows::are_there(out, point.bytes) => {
-            let (done, all) = (point.moment, recorded.times.len());
+            let (done, all) = (point.moment, recorded.times().len());
             bar.say(&format!("going on after {done} of {all} frames"));
             Streaming::resumed(recorded, point, (out, kind))
         }

@@ -12,28 +12,25 @@ use crate::recording::reader::Reader;
 use crate::recording::source::Source;
 use crate::recording::timeline::Timeline;
 
-/// The rate that is assumed where frames have no times, Hz.
-const USUAL_RATE: f64 = 30.0;
-
 pub(super) struct Recorded<'a> {
     pub(super) source: &'a Source,
     pub(super) reader: Reader<'a>,
-    /// When each moment was, seconds: by the cameras' clocks or, where they have none, by the rate.
-    pub(super) times: Vec<f64>,
-    /// The rate, where the cameras have no clocks.
-    rate: Option<f64>,
 }
 
 impl<'a> Recorded<'a> {
     /// Opens a recording; `rate` is that of pictures without times, Hz.
     pub(super) fn open(source: &'a Source, rate: Option<f64>) -> Result<Self> {
         let reader = source.reader()?;
-        let moments = reader.moments();
-        let clock: Option<Vec<f64>> = moments.iter().map(|moment| moment.time).collect();
-        let rate = clock.is_none().then(|| rate.unwrap_or(USUAL_RATE));
-        let by_rate = |rate: f64| (0..moments.len()).map(|k| k as f64 / rate).collect();
-        let times = clock.unwrap_or_else(|| by_rate(rate.unwrap_or(USUAL_RATE)));
-        Ok(Self { source, reader, times, rate })
+        let reader = match rate {
+            Some(rate) => reader.with_rate(rate),
+            None => reader,
+        };
+        Ok(Self { source, reader })
+    }
+
+    /// When each moment was, s.
+    pub(super) fn times(&self) -> &[f64] {
+        &self.reader.times
     }
 
     /// Fits some moments from everywhere together; what cannot be read is noted.
@@ -56,14 +53,14 @@ impl<'a> Recorded<'a> {
 
     /// What is said of all frames.
     pub(super) fn header(&self, hand: &HandShape, rest: DAffine3) -> TakeHeader {
-        take::header(&self.source.cameras, (hand, rest), self.rate)
+        take::header(&self.source.cameras, (hand, rest), self.reader.rate)
     }
 
     /// What is said of a moment.
     pub(super) fn frame(&self, moment: usize, fit: Option<&FrameFit>) -> TakeFrame {
-        let Self { source, reader, times, .. } = self;
+        let Self { source, reader } = self;
         let place = (moment, &reader.moments()[moment]);
-        take::frame(&source.cameras, place, times[moment], fit)
+        take::frame(&source.cameras, place, reader.times[moment], fit)
     }
 
     /// Says what was found.

@@ -49,26 +49,26 @@ impl<'a> Streaming<'a> {
         let rest = tracker.world_from_hand().context("the hand's place is known")?;
         // Before the first row there is only the header, which is written again.
         let last = moment.checked_sub(1);
-        let last = last.map(|last| (last as u64, recorded.times[last]));
+        let last = last.map(|last| (last as u64, recorded.times()[last]));
         let written = last.map(|last| Written { bytes, last });
         let header = recorded.header(&hand, rest);
         let rows = Rows::new(out, kind, header, written.as_ref(), tally)?;
         let frame = recorded.reader.read_noting(moment, &mut Vec::new());
-        tracker.push(recorded.times[moment], &frame)?;
+        tracker.push(&frame)?;
         Ok(Self { recorded, hand, tracker, rows, next: moment + 1 })
     }
 
     /// Tracks the hand to the end, and makes the rows the output.
     pub(super) fn run(self, journal: &mut Journal, bar: &Bar) -> Result<Tally> {
         let Self { mut recorded, hand, mut tracker, mut rows, next } = self;
-        let count = recorded.times.len();
+        let count = recorded.times().len();
         bar.begin("track the hand", count - next);
         for moment in next..count {
             let state = tracker.state().context("the hand is known")?;
             let mut failures = Vec::new();
             let frame = recorded.reader.read_noting(moment, &mut failures);
             rows.tally.add_failures(failures);
-            if let Some(due) = tracker.push(recorded.times[moment], &frame)? {
+            if let Some(due) = tracker.push(&frame)? {
                 rows.push(&recorded.frame(moment - 1, due.fit.as_ref()))?;
             }
             journal.keep(|| {

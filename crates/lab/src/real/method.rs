@@ -22,6 +22,9 @@ use crate::clock::thread_ms;
 /// A camera's landmarks, frame by frame, px.
 pub type Landmarks = BTreeMap<FrameName, Points<DVec2>>;
 
+/// The rate that frames' numbers count at, Hz: webcams'.
+const RATE: f64 = 30.0;
+
 /// What a method looks at: frames of a take through some of its cameras. References are not in it.
 pub struct Sequence<'a> {
     /// The take.
@@ -44,6 +47,14 @@ impl Sequence<'_> {
     /// The cameras that are used.
     pub fn cameras(&self) -> Vec<Camera> {
         self.take.cameras(self.views)
+    }
+
+    /// When the frame of a number was taken, s: frames that have numbers are counted by them.
+    pub fn seconds(&self, number: usize) -> f64 {
+        match &self.frames[number] {
+            FrameName::Number(number) => *number as f64 / RATE,
+            FrameName::Text(_) => number as f64 / RATE,
+        }
     }
 
     /// Whether the view of a number among those used is lost in the frame of a number.

@@ -5,7 +5,6 @@ use anyhow::{Context, Result, anyhow};
 use phalanx::{Delay, Progress, TrackSettings, TrackedFrame, Tracker};
 use phalanx_hand::HandShape;
 
-use super::frame::FrameName;
 use super::method::{Method, Outcome, Sequence};
 use super::whole_take::{Fits, found};
 use crate::clock::timed;
@@ -49,10 +48,9 @@ impl Method for Tracked<'_> {
             }
         };
         let (mut tracked, mut times) = (Vec::new(), Vec::new());
-        for (number, name) in sequence.frames.iter().enumerate() {
+        for number in 0..sequence.frames.len() {
             let frame = self.fits.frame_of(sequence, number)?;
-            let time = seconds(name, number);
-            let (seconds, due) = timed(|| tracker.push(time, &frame))?;
+            let (seconds, due) = timed(|| tracker.push(&frame))?;
             tracked.extend(due);
             times.push(1e3 * seconds);
             progress.step();
@@ -68,16 +66,5 @@ impl Method for Tracked<'_> {
             }
         };
         Ok(tracked.into_iter().zip(times).map(outcome).collect())
-    }
-}
-
-/// The rate that frames' numbers count at, Hz: webcams'.
-const RATE: f64 = 30.0;
-
-/// When a frame was taken, seconds.
-fn seconds(name: &FrameName, number: usize) -> f64 {
-    match name {
-        FrameName::Number(number) => *number as f64 / RATE,
-        FrameName::Text(_) => number as f64 / RATE,
     }
 }

@@ -86,7 +86,8 @@ impl Fits {
         };
         let mut masks: Vec<Option<Mask>> = pictures.iter().map(mask).map(Some).collect();
         masks.resize(sequence.views.len(), None);
-        TakeFrame { masks, landmarks: sequence.landmarks_of(number) }
+        let seconds = Some(sequence.seconds(number));
+        TakeFrame { masks, landmarks: sequence.landmarks_of(number), seconds }
     }
 }
 

@@ -4,19 +4,24 @@ use phalanx_refine::PosePrior;
 
 use super::found::Found;
 use super::motion::Motion;
+use super::times::Times;
 
 /// Of several poses of each frame, the ones that are likeliest as they follow each other (Viterbi 1967): each is
 /// as unlikely as its views say, and as the way to it from the pose before. `None` of a frame without any.
-pub(super) fn likeliest(hypotheses: Vec<Vec<Found>>, prior: &PosePrior) -> Vec<Option<Found>> {
+pub(super) fn likeliest(
+    hypotheses: Vec<Vec<Found>>,
+    times: &Times,
+    prior: &PosePrior,
+) -> Vec<Option<Found>> {
     let best: Vec<Option<Found>> = hypotheses.iter().map(|frame| frame.first().cloned()).collect();
-    let Some(motion) = Motion::of_found(&best, prior) else { return best };
-    let chosen = chosen(&hypotheses, &motion);
+    let Some(motion) = Motion::of_found(&best, times, prior) else { return best };
+    let chosen = chosen(&hypotheses, times, &motion);
     let frames = hypotheses.into_iter().zip(chosen);
     frames.map(|(mut frame, chosen)| Some(frame.swap_remove(chosen?))).collect()
 }
 
 /// Which of its poses is chosen for each frame.
-fn chosen(hypotheses: &[Vec<Found>], motion: &Motion) -> Vec<Option<usize>> {
+fn chosen(hypotheses: &[Vec<Found>], times: &Times, motion: &Motion) -> Vec<Option<usize>> {
     let seen: Vec<usize> = (0..hypotheses.len()).filter(|&k| !hypotheses[k].is_empty()).collect();
     // What speaks against the best way to each pose, and the pose before on that way.
     let mut ways: Vec<Vec<(f64, usize)>> = Vec::with_capacity(seen.len());
@@ -25,7 +30,8 @@ fn chosen(hypotheses: &[Vec<Found>], motion: &Motion) -> Vec<Option<usize>> {
             let before = n.checked_sub(1).map(|before| (&ways[before], seen[before]));
             let (way, from) = before.map_or((0.0, 0), |(ways, before)| {
                 let from = |(earlier, found): (usize, &Found)| {
-                    let change = motion.against(&found.refined.pose, &own.refined.pose, k - before);
+                    let away = times.between(before, k);
+                    let change = motion.against(&found.refined.pose, &own.refined.pose, away);
                     (ways[earlier].0 + change, earlier)
                 };
                 let all = hypotheses[before].iter().enumerate().map(from);
@@ -67,14 +73,19 @@ mod tests {
     }
 
     /// What speaks against one pose of each frame that has any.
-    fn against(hypotheses: &[Vec<Found>], motion: &Motion, choice: &[Option<usize>]) -> f64 {
+    fn against(
+        hypotheses: &[Vec<Found>],
+        times: &Times,
+        motion: &Motion,
+        choice: &[Option<usize>],
+    ) -> f64 {
         let frames = hypotheses.iter().zip(choice).enumerate();
         let chain: Vec<(usize, &Found)> =
             frames.filter_map(|(k, (frame, own))| Some((k, &frame[(*own)?]))).collect();
         let seen: f64 = chain.iter().map(|(_, found)| found.refined.energy).sum();
         let moved = |pair: &[(usize, &Found)]| {
             let [(before, one), (after, other)] = [pair[0], pair[1]];
-            motion.against(&one.refined.pose, &other.refined.pose, after - before)
+            motion.against(&one.refined.pose, &other.refined.pose, times.between(before, after))
         };
         seen + chain.windows(2).map(moved).sum::<f64>()
     }
@@ -108,13 +119,15 @@ mod tests {
             let frame = |frame: Vec<(f64, f64)>| frame.into_iter().map(found).collect();
             let hypotheses: Vec<Vec<Found>> = frames.into_iter().map(frame).collect();
             let known = [0.0, usual].map(|bent| Some(found((bent, 0.0))));
-            let motion = Motion::of_found(&known, coupled()).expect("one frame follows another");
-            let chosen = chosen(&hypotheses, &motion);
-            let own = against(&hypotheses, &motion, &chosen);
+            let motion = Motion::of_found(&known, &Times::even(known.len()), coupled());
+            let motion = motion.expect("one frame follows another");
+            let times = Times::even(hypotheses.len());
+            let chosen = chosen(&hypotheses, &times, &motion);
+            let own = against(&hypotheses, &times, &motion, &chosen);
             for other in choices(&hypotheses) {
                 let is_answered = chosen.iter().map(Option::is_some);
                 prop_assert!(is_answered.eq(other.iter().map(Option::is_some)));
-                prop_assert!(own <= against(&hypotheses, &motion, &other) + 1e-9);
+                prop_assert!(own <= against(&hypotheses, &times, &motion, &other) + 1e-9);
             }
         }
     }
@@ -125,7 +138,8 @@ mod tests {
         let mut hypotheses: Vec<Vec<Found>> = (0..20).map(|k| vec![usual(k)]).collect();
         // It explains the picture a little better.
         hypotheses[3].insert(0, found((1.5, 4.5)));
-        let bent: Vec<f64> = likeliest(hypotheses, coupled())
+        let times = Times::even(hypotheses.len());
+        let bent: Vec<f64> = likeliest(hypotheses, &times, coupled())
             .into_iter()
             .map(|found| found.expect("every frame has a pose").refined.pose[Dof::IndexPip])
             .collect();

@@ -25,6 +25,7 @@ mod size;
 mod starts;
 mod take;
 mod take_frame;
+mod times;
 mod tracking;
 mod views;
 mod volume;

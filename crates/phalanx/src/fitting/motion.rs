@@ -4,13 +4,14 @@ use phalanx_hand::{Dof, Pose};
 use phalanx_refine::PosePrior;
 
 use super::found::Found;
+use super::times::Times;
 use crate::error::Result;
 
 /// How the joint angles of a take move.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Motion {
-    /// Mean squares of how far each moves from one frame to the next, radians²; infinite for where the hand is and how
-    /// it is turned, of which silhouettes tell enough.
+    /// Mean squares of how far each moves in the usual time from one frame to the next, radians²; infinite for where the
+    /// hand is and how it is turned, of which silhouettes tell enough.
     steps: [f64; Dof::COUNT],
     /// Variances of each, whatever the frame.
     any: [f64; Dof::COUNT],
@@ -25,16 +26,23 @@ pub(super) const FREEDOM: f64 = 3.0;
 
 impl Motion {
     /// Of what was found in a take, as [`of`](Self::of) its poses.
-    pub(super) fn of_found(found: &[Option<Found>], prior: &PosePrior) -> Option<Self> {
+    pub(super) fn of_found(
+        found: &[Option<Found>],
+        times: &Times,
+        prior: &PosePrior,
+    ) -> Option<Self> {
         let pose = |found: &Option<Found>| Some(found.as_ref()?.refined.pose);
-        Self::of(&found.iter().map(pose).collect::<Vec<_>>(), prior)
+        Self::of(&found.iter().map(pose).collect::<Vec<_>>(), times, prior)
     }
 
     /// Of a take's poses, of which this was known before; `None` where no frame follows another.
-    fn of(poses: &[Option<Pose>], prior: &PosePrior) -> Option<Self> {
-        let pairs = || poses.windows(2).filter_map(|pair| Some((pair[0]?, pair[1]?)));
+    fn of(poses: &[Option<Pose>], times: &Times, prior: &PosePrior) -> Option<Self> {
+        let pairs = || {
+            let pair = |k: usize| Some((poses[k - 1]?, poses[k]?, times.between(k - 1, k)));
+            (1..poses.len()).filter_map(pair)
+        };
         let step = |dof: Dof| {
-            let squares = pairs().map(|(one, other)| (other[dof] - one[dof]).powi(2));
+            let squares = pairs().map(|(one, other, away)| (other[dof] - one[dof]).powi(2) / away);
             mean(squares).max(LEAST.powi(2))
         };
         let any = |dof: Dof| {
@@ -48,18 +56,17 @@ impl Motion {
         is_any.then(|| Self { steps: Dof::ALL.map(step), any: Dof::ALL.map(any) })
     }
 
-    /// How well an angle is known by that of a frame so many frames away, a standard deviation, beside what any frame of
+    /// How well an angle is known by that of a frame so many usual steps away, a standard deviation, beside what any frame of
     /// the take tells of it: any two frames differ by twice the variance. Of stills, and of frames so far away that they
     /// are not nearer than any, that is nothing (infinite).
-    fn known(&self, dof: Dof, away: usize) -> f64 {
-        let told =
-            (self.steps[dof.index()] * away as f64).recip() - (2.0 * self.any[dof.index()]).recip();
+    fn known(&self, dof: Dof, away: f64) -> f64 {
+        let told = (self.steps[dof.index()] * away).recip() - (2.0 * self.any[dof.index()]).recip();
         told.max(0.0).sqrt().recip()
     }
 
-    /// What speaks against one pose so many frames after another: joints walk at random, mostly slowly and at
+    /// What speaks against one pose so many steps after another: joints walk at random, mostly slowly and at
     /// times fast (Student's distribution).
-    pub(super) fn against(&self, one: &Pose, other: &Pose, away: usize) -> f64 {
+    pub(super) fn against(&self, one: &Pose, other: &Pose, away: f64) -> f64 {
         let of = |dof: Dof| {
             let square = ((other[dof] - one[dof]) / self.known(dof, away)).powi(2);
             0.5 * (FREEDOM + 1.0) * (square / FREEDOM).ln_1p()
@@ -67,13 +74,9 @@ impl Motion {
         Dof::ALL.map(of).iter().sum()
     }
 
-    /// What is known of a pose beside those of other frames, each with how many frames it is away: joints
+    /// What is known of a pose beside those of other frames, each with how many steps it is away: joints
     /// walk at random.
-    pub(super) fn beside(
-        &self,
-        prior: &PosePrior,
-        others: &[(usize, &Found)],
-    ) -> Result<PosePrior> {
+    pub(super) fn beside(&self, prior: &PosePrior, others: &[(f64, &Found)]) -> Result<PosePrior> {
         others.iter().try_fold(prior.clone(), |prior, (away, other)| {
             let known = Dof::ALL.map(|dof| self.known(dof, *away));
             Ok(prior.product(&PosePrior::independent(other.refined.pose, &known)?)?)
@@ -91,6 +94,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::fitting::take_frame::TakeFrame;
     use crate::synthesis::postures::coupled;
 
     fn bent(angles: &[f64]) -> Vec<Option<Pose>> {
@@ -108,20 +112,39 @@ mod tests {
         #[test]
         fn a_frame_further_away_tells_no_more(
             angles in prop::collection::vec(0.0..1.8_f64, 2..20),
-            away in 1..30_usize,
+            away in 0.1..30.0_f64,
         ) {
-            let motion = Motion::of(&bent(&angles), coupled()).expect("one frame follows another");
+            let times = Times::even(angles.len());
+            let motion =
+                Motion::of(&bent(&angles), &times, coupled()).expect("one frame follows another");
             let (nearer, further) =
-                (motion.known(Dof::IndexPip, away), motion.known(Dof::IndexPip, away + 1));
+                (motion.known(Dof::IndexPip, away), motion.known(Dof::IndexPip, away + 1.0));
             prop_assert!(nearer > 0.0 && nearer <= further, "{nearer} {further}");
         }
+    }
+
+    /// Frames that are missing make a motion no faster.
+    #[test]
+    fn a_motion_is_as_fast_as_it_is_in_time() {
+        let all: Vec<f64> = (0..60).map(|k| 0.01 * f64::from(k * k % 23)).collect();
+        let known = |kept: &dyn Fn(&usize) -> bool| {
+            let numbers: Vec<usize> = (0..all.len()).filter(kept).collect();
+            let angles: Vec<f64> = numbers.iter().map(|&k| all[k]).collect();
+            let frame = |&k: &usize| TakeFrame::default().at(k as f64 / 30.0);
+            let times = Times::of(&numbers.iter().map(frame).collect::<Vec<_>>()).unwrap();
+            Motion::of(&bent(&angles), &times, coupled()).unwrap().known(Dof::IndexPip, 1.0)
+        };
+        let (whole, with_a_pause) = (known(&|_| true), known(&|k| !(20..40).contains(k)));
+        assert!((with_a_pause / whole - 1.0).abs() < 0.15, "{with_a_pause} {whole}");
     }
 
     #[test]
     fn a_slow_motion_is_known_by_its_neighbours_and_stills_are_not() {
         let slow: Vec<f64> = (0..40).map(|k| 0.9 - 0.9 * (0.1 * f64::from(k)).cos()).collect();
-        let known =
-            |angles: &[f64]| Motion::of(&bent(angles), coupled()).unwrap().known(Dof::IndexPip, 1);
+        let known = |angles: &[f64]| {
+            let motion = Motion::of(&bent(angles), &Times::even(angles.len()), coupled());
+            motion.unwrap().known(Dof::IndexPip, 1.0)
+        };
         assert!(known(&slow) < 0.1, "{}", known(&slow));
         // Straight or folded, one as often as the other, in no order.
         let stills: Vec<f64> = (0..40).map(|k| if k * k % 7 < 3 { 0.0 } else { 1.8 }).collect();

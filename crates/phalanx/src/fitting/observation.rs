@@ -74,7 +74,7 @@ impl Sight {
     /// # Errors
     /// Another number of masks or landmarks than cameras.
     pub(super) fn of(cameras: &[Camera], frame: &TakeFrame) -> Result<Self> {
-        let TakeFrame { masks, landmarks } = frame;
+        let TakeFrame { masks, landmarks, .. } = frame;
         if masks.len() != cameras.len() {
             let cameras = cameras.iter().map(|camera| camera.name.clone()).collect();
             return Err(Error::PictureCount { cameras, found: masks.len() });

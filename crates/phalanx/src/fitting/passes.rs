@@ -12,6 +12,7 @@ use super::observation::Sight;
 use super::repertoire;
 use super::search;
 use super::take_frame::TakeFrame;
+use super::times::Times;
 use super::views;
 use crate::error::Result;
 use crate::progress::Progress;
@@ -42,6 +43,7 @@ pub(super) fn first(
 pub(super) fn again(
     fitter: &FrameFitter<'_>,
     found: &[Option<Found>],
+    times: &Times,
     progress: &dyn Progress,
 ) -> Result<Vec<Option<Found>>> {
     progress.begin("fit each frame once more", found.len());
@@ -54,7 +56,7 @@ pub(super) fn again(
         if !is_better[k] {
             // Frames in a row may all be wrong in the same way.
             let better = neighbours(found, k, |other| is_better[other]);
-            near.extend(better.into_iter().filter(|(away, _)| *away > NEIGHBOURS));
+            near.extend(better.into_iter().filter(|(other, _)| other.abs_diff(k) > NEIGHBOURS));
             postures = &shown;
         }
         let near: Vec<&Found> = near.into_iter().map(|(_, found)| found).collect();
@@ -66,7 +68,7 @@ pub(super) fn again(
     };
     let hypotheses: Vec<Vec<Found>> =
         (0..found.len()).into_par_iter().map(once).collect::<Result<_>>()?;
-    Ok(likeliest(hypotheses, fitter.prior))
+    Ok(likeliest(hypotheses, times, fitter.prior))
 }
 
 /// All frames from the first to the last and back, each between its neighbours as they are then, from which
@@ -74,16 +76,18 @@ pub(super) fn again(
 pub(super) fn swept(
     fitter: &FrameFitter<'_>,
     mut found: Vec<Option<Found>>,
+    times: &Times,
     progress: &dyn Progress,
 ) -> Result<Vec<Option<Found>>> {
-    let Some(motion) = Motion::of_found(&found, fitter.prior) else { return Ok(found) };
+    let Some(motion) = Motion::of_found(&found, times, fitter.prior) else { return Ok(found) };
     progress.begin("fit each frame between its neighbours", 2 * found.len());
     let count = found.len();
     for k in (0..count).chain((0..count).rev()) {
         progress.step();
         let Some(own) = &found[k] else { continue };
         let near = neighbours(&found, k, |_| true);
-        let prior = motion.beside(fitter.prior, &near)?;
+        let beside = near.iter().map(|(other, found)| (times.between(k, *other), *found));
+        let prior = motion.beside(fitter.prior, &beside.collect::<Vec<_>>())?;
         let near: Vec<&Found> = near.into_iter().map(|(_, found)| found).collect();
         let fitter = fitter.with_prior(&prior);
         found[k] = fitter.again(own, &own.left_out, &near, Postures::Given)?;
@@ -99,15 +103,14 @@ fn is_better(found: &[Option<Found>]) -> Vec<bool> {
     found.iter().map(|found| found.as_ref().is_some_and(|own| own.misfit <= median)).collect()
 }
 
-/// The nearest frames before and after a frame that count and in which a hand was found, and how many frames each is away.
+/// The nearest frames before and after a frame that count and in which a hand was found, with their numbers.
 fn neighbours(
     found: &[Option<Found>],
     k: usize,
     is_counted: impl Fn(usize) -> bool,
 ) -> Vec<(usize, &Found)> {
-    let of = |other: usize| {
-        found[other].as_ref().filter(|_| is_counted(other)).map(|own| (k.abs_diff(other), own))
-    };
+    let of =
+        |other: usize| found[other].as_ref().filter(|_| is_counted(other)).map(|own| (other, own));
     let before = (0..k).rev().filter_map(of).take(NEIGHBOURS);
     before.chain((k + 1..found.len()).filter_map(of).take(NEIGHBOURS)).collect()
 }

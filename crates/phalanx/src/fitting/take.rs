@@ -19,6 +19,7 @@ use super::report::{FrameFit, Reporter};
 use super::size;
 use super::starts;
 use super::take_frame::TakeFrame;
+use super::times::Times;
 use super::views;
 use super::weights::ViewWeights;
 use super::wrong_view;
@@ -83,11 +84,12 @@ const ROUNDS: usize = 4;
 
 /// Fits a whole take: where the hand works, its proportions, and its pose in every frame.
 ///
-/// Frames are in the order of time. Nothing else is needed; the same frames give the same fit, at any
+/// Frames are in the order of time, and may be further apart in some places than in others where they say when they
+/// were ([`TakeFrame::at`]); without times they follow each other at one pace. Nothing else is needed; the same frames give the same fit, at any
 /// number of threads.
 ///
 /// # Errors
-/// Frames with another number of masks or landmarks than cameras, or no frame in which any camera sees a
+/// Frames with another number of masks or landmarks than cameras or not in the order of time, or no frame in which any camera sees a
 /// hand: landmarks alone need two cameras.
 pub fn fit_take(
     cameras: &[Camera],
@@ -97,7 +99,8 @@ pub fn fit_take(
 ) -> Result<TakeFit> {
     let (prior, refinement) = (starts::pose_prior()?, consensus::refinement());
     let believing = consensus::believing(cameras.len());
-    let take = Take::of(cameras, &settings.hand, &prior, &refinement);
+    let times = &Times::of(frames)?;
+    let take = Take::of((cameras, times), &settings.hand, &prior, &refinement);
     let keys = consensus::key_frames(cameras, frames, &take.fitter(Weights::Relative), progress)?;
     let mut best: Option<Around<'_>> = None;
     let places: Vec<DAffine3> = keys.iter().map(|key| key.frame(&take.hand.shape)).collect();
@@ -121,6 +124,7 @@ pub fn fit_take(
 #[derive(Clone)]
 struct Take<'a> {
     cameras: &'a [Camera],
+    times: &'a Times,
     prior: &'a PosePrior,
     refinement: &'a PoseFitSettings,
     mean: HandShape,
@@ -158,7 +162,7 @@ enum Weights {
 
 impl<'a> Take<'a> {
     fn of(
-        cameras: &'a [Camera],
+        (cameras, times): (&'a [Camera], &'a Times),
         hand: &HandShape,
         prior: &'a PosePrior,
         refinement: &'a PoseFitSettings,
@@ -166,7 +170,7 @@ impl<'a> Take<'a> {
         let mean = fitted_hand(hand);
         let hand = KnownHand::anyone(&mean);
         let weights = ViewWeights::unknown(cameras.len());
-        Self { cameras, prior, refinement, mean, hand, weights, persistent: 0.0 }
+        Self { cameras, times, prior, refinement, mean, hand, weights, persistent: 0.0 }
     }
 
     fn fitter(&self, weights: Weights) -> FrameFitter<'_> {
@@ -222,7 +226,7 @@ impl<'a> Take<'a> {
         }
         let fitter = self.fitter(Weights::Relative);
         let found = passes::first(self.cameras, frames, &fitter, &[*place], progress)?;
-        passes::again(&fitter, &found, progress)
+        passes::again(&fitter, &found, self.times, progress)
     }
 
     /// All frames without the views that contradict the others.
@@ -263,8 +267,8 @@ impl<'a> Take<'a> {
             let before = self.clone();
             let is_learnt = proportions == Proportions::FromTake && self.learn(&found, place)?;
             let fitter = self.fitter(Weights::Relative);
-            let next = passes::again(&fitter, &found, progress)?;
-            let next = passes::swept(&fitter, next, progress)?;
+            let next = passes::again(&fitter, &found, self.times, progress)?;
+            let next = passes::swept(&fitter, next, self.times, progress)?;
             let misfit: f64 = next.iter().flatten().map(|found| found.misfit).sum();
             if misfit >= least {
                 *self = before;
@@ -316,7 +320,8 @@ impl<'a> Take<'a> {
                 return Ok(seen.clone());
             }
             let fitted = (0..seen.len()).filter_map(|other| Some((other, seen[other].as_ref()?)));
-            let nearest = fitted.min_by_key(|(other, _)| other.abs_diff(k));
+            let away = |other: usize| self.times.between(other, k);
+            let nearest = fitted.min_by(|(a, _), (b, _)| away(*a).total_cmp(&away(*b)));
             Ok(reporter.not_seen(nearest.ok_or(Error::NoHand)?.1))
         };
         (0..seen.len()).map(fill).collect()

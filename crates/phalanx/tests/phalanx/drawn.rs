@@ -65,6 +65,9 @@ pub(crate) fn drawn_coming(hand: &HandShape, count: usize, away: usize) -> Drawn
     drawn_in(hand, (0..count).map(coming))
 }
 
+/// How many frames there are in a second.
+const RATE: f64 = 30.0;
+
 /// A hand in some poses.
 fn drawn_in(hand: &HandShape, poses: impl Iterator<Item = Pose>) -> Drawn {
     let (cameras, rest) = (cameras(), DAffine3::IDENTITY);
@@ -77,7 +80,8 @@ fn drawn_in(hand: &HandShape, poses: impl Iterator<Item = Pose>) -> Drawn {
             let drawn = renderer.silhouette(&posed.primitives);
             Some(drawn.expect("a hand before the camera").into())
         };
-        frames.push(TakeFrame::of_masks(renderers.iter_mut().map(&mut mask).collect()));
+        let masks = renderers.iter_mut().map(&mut mask).collect();
+        frames.push(TakeFrame::of_masks(masks).at(frames.len() as f64 / RATE));
         joints.push(posed.joints);
     }
     Drawn { cameras, frames, joints }

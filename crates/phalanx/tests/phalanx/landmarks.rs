@@ -134,8 +134,8 @@ fn a_hand_is_tracked_by_landmarks() {
     for frames in [frames.clone(), without_masks(&frames)] {
         let mut tracker = Tracker::new(&cameras, &settings).expect("a tracker");
         let mut fits = Vec::new();
-        for (k, frame) in frames.iter().enumerate() {
-            let answer = tracker.push(k as f64 / 30.0, frame).expect("a frame");
+        for frame in &frames {
+            let answer = tracker.push(frame).expect("a frame");
             fits.extend(answer.and_then(|frame| frame.fit));
         }
         let found = errors(&fits, &joints);

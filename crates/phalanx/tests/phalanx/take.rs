@@ -210,6 +210,22 @@ fn a_take_without_a_hand_is_an_error() {
 }
 
 #[test]
+fn frames_come_in_the_order_of_time_or_without_times() {
+    let Drawn { cameras, mut frames, .. } = drawn(3);
+    let fit = |frames: &[TakeFrame]| {
+        fit_take(&cameras, frames, &TakeSettings::default(), &NoProgress).expect_err("times")
+    };
+    frames[2].seconds = frames[1].seconds;
+    let error = fit(&frames);
+    assert!(matches!(error, Error::FrameTime { .. }), "{error}");
+    frames[2].seconds = None;
+    assert_eq!(fit(&frames).to_string(), "frame 2 has no time; `TakeFrame::at` gives it one");
+    let mut tracker = Tracker::new(&cameras, &TrackSettings::default()).expect("a tracker");
+    let error = tracker.push(&frames[2]).expect_err("no time");
+    assert_eq!(error.to_string(), "a frame has no time; `TakeFrame::at` gives it one");
+}
+
+#[test]
 fn the_volume_holds_a_hand_that_goes_far_along_its_own_axes() {
     let (cameras, hand, rest) = (cameras(), hand(), DAffine3::IDENTITY);
     let pose = |k: usize| {
@@ -244,7 +260,7 @@ fn track(cameras: &[Camera], frames: &[TakeFrame], delay: Delay) -> Vec<TrackedF
     let mut tracker = Tracker::new(cameras, &settings).expect("a hand");
     let mut tracked = Vec::new();
     for (k, frame) in frames.iter().enumerate() {
-        let due = tracker.push(k as f64 / 30.0, frame).expect("a frame");
+        let due = tracker.push(frame).expect("a frame");
         assert_eq!(due.is_some(), delay == Delay::None || k > 0, "{k}");
         tracked.extend(due);
     }
@@ -277,7 +293,7 @@ fn the_size_of_a_childs_hand_is_found_as_soon_as_two_cameras_see_it() {
         frames[..first].iter_mut().for_each(|frame| frame.masks[1..].fill(None));
         let mut tracker = Tracker::new(&cameras, &settings).expect("a hand");
         for (k, (frame, truth)) in frames.iter().zip(&joints).enumerate() {
-            let tracked = tracker.push(k as f64 / 30.0, frame).expect("a frame").expect("no delay");
+            let tracked = tracker.push(frame).expect("a frame").expect("no delay");
             let error = mean_error(&tracked.fit.expect("a hand").joints, truth);
             let ratio = tracker.hand().length_mm() / small.length_mm();
             assert_eq!((ratio - 1.0).abs() < 0.07, k >= first, "frame {k}: {ratio}");
@@ -294,7 +310,7 @@ fn a_hand_that_comes_into_the_pictures_is_learnt_once_they_show_all_of_it() {
     let settings = TrackSettings { delay: Delay::None, ..TrackSettings::default() };
     let mut tracker = Tracker::new(&cameras, &settings).expect("a hand");
     for (k, (frame, truth)) in frames.iter().zip(&joints).enumerate() {
-        let tracked = tracker.push(k as f64 / 30.0, frame).expect("a frame").expect("no delay");
+        let tracked = tracker.push(frame).expect("a frame").expect("no delay");
         let Some(fit) = tracked.fit else { continue };
         let error = mean_error(&fit.joints, truth);
         assert!(error < 15.0 || !fit.doubts.is_empty(), "frame {k}: {error} mm, undoubted");
@@ -325,11 +341,11 @@ fn a_hand_that_has_not_been_seen_yet_has_no_pose_and_time_goes_on() {
     let Drawn { cameras, frames, .. } = drawn(1);
     let mut tracker = Tracker::new(&cameras, &TrackSettings::default()).expect("a hand");
     let nothing = TakeFrame::of_masks(vec![None; cameras.len()]);
-    assert_eq!(tracker.push(0.0, &nothing).expect("a frame"), None);
-    let first = tracker.push(0.1, &frames[0]).expect("a frame").expect("the one before");
+    assert_eq!(tracker.push(&nothing.clone().at(0.0)).expect("a frame"), None);
+    let first = tracker.push(&frames[0].clone().at(0.1)).expect("a frame").expect("the one before");
     assert_eq!(first, TrackedFrame { time: 0.0, fit: None });
     assert!(tracker.world_from_hand().is_some());
-    let error = tracker.push(0.1, &frames[0]).expect_err("no time has passed");
+    let error = tracker.push(&frames[0].clone().at(0.1)).expect_err("no time has passed");
     assert!(matches!(error, Error::FrameTime { .. }), "{error}");
 }
 
@@ -337,7 +353,6 @@ fn a_hand_that_has_not_been_seen_yet_has_no_pose_and_time_goes_on() {
 fn a_tracker_goes_on_from_its_state_as_if_it_had_never_stopped() {
     let Drawn { cameras, mut frames, .. } = drawn(6);
     frames[2].masks.fill(None);
-    let time = |k: usize| k as f64 / 30.0;
     let whole = track(&cameras, &frames, Delay::OneFrame);
     let settings =
         TrackSettings { hand: hand(), proportions: Proportions::Given, delay: Delay::OneFrame };
@@ -347,13 +362,13 @@ fn a_tracker_goes_on_from_its_state_as_if_it_had_never_stopped() {
         let mut resumed = Tracker::resumed(&cameras, state).expect("a tracker");
         let mut tracked = Vec::new();
         for (k, frame) in frames.iter().enumerate().skip(broken) {
-            let due = resumed.push(time(k), frame).expect("a frame");
+            let due = resumed.push(frame).expect("a frame");
             assert_eq!(due.is_some(), k > broken, "{k}");
             tracked.extend(due);
         }
         tracked.extend(resumed.finish().expect("a frame"));
         assert_eq!(tracked, whole[broken..]);
-        tracker.push(time(broken), frame).expect("a frame");
+        tracker.push(frame).expect("a frame");
     }
     let learning = Tracker::new(&cameras, &TrackSettings::default()).expect("a hand");
     assert!(learning.state().is_none());

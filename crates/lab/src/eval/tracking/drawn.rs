@@ -62,7 +62,7 @@ impl Studio {
             Ok(Some(AdaptedSkin::new(&self.skin, &photograph).segment(&photograph)))
         };
         let masks = self.cameras.iter().enumerate().map(mask).collect::<Result<_>>()?;
-        Ok(TakeFrame::of_masks(masks))
+        Ok(TakeFrame::of_masks(masks).at(number as f64 / RATE))
     }
 }
 

@@ -5,7 +5,7 @@ use glam::DVec3;
 use phalanx::{Delay, Proportions, TakeFrame, TrackSettings, TrackedFrame, Tracker};
 use phalanx_hand::{Digit, Dof, Pose};
 
-use super::drawn::{RATE, Studio};
+use super::drawn::Studio;
 
 /// A recording that was followed.
 pub(super) struct Followed {
@@ -33,8 +33,8 @@ impl Followed {
         let settings = TrackSettings { hand, proportions: Proportions::Given, delay };
         let mut tracker = Tracker::new(&studio.cameras, &settings)?;
         let mut tracked: Vec<TrackedFrame> = Vec::with_capacity(frames.len());
-        for (number, frame) in frames.iter().enumerate() {
-            tracked.extend(tracker.push(number as f64 / RATE, frame)?);
+        for frame in frames {
+            tracked.extend(tracker.push(frame)?);
         }
         tracked.extend(tracker.finish()?);
         let mut followed =

@@ -32,7 +32,7 @@ impl Seen {
         frame: &TakeFrame,
         finder: &mut HandDetector,
     ) -> Result<Self> {
-        let TakeFrame { masks, landmarks } = frame;
+        let TakeFrame { masks, landmarks, .. } = frame;
         if masks.len() != cameras.len() {
             let cameras = cameras.iter().map(|camera| camera.name.clone()).collect();
             return Err(Error::PictureCount { cameras, found: masks.len() });

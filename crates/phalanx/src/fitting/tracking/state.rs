@@ -19,8 +19,8 @@ use crate::fitting::take::Known;
 /// // `kept` is the state before the frame at 1.0 s.
 /// let mut tracker = Tracker::resumed(cameras, kept)?;
 /// // The frame before was answered by the tracker that it is the state of.
-/// assert_eq!(tracker.push(1.0, last)?, None);
-/// let answer = tracker.push(1.1, next)?.expect("the frame at 1.0 s");
+/// assert_eq!(tracker.push(last)?, None);
+/// let answer = tracker.push(next)?.expect("the frame at 1.0 s");
 /// # Ok(())
 /// # }
 /// ```

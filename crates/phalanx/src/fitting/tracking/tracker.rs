@@ -176,12 +176,13 @@ impl Tracker {
         self.rest
     }
 
-    /// Takes the next frame: `time` in seconds, later than the one before. Gives the frame that is due: this
-    /// one or, a frame late, the one before.
+    /// Takes the next frame, which says its time ([`TakeFrame::at`]), later than that of the one before. Gives the frame
+    /// that is due: this one or, a frame late, the one before.
     ///
     /// # Errors
-    /// A time that is not after the last one, or another number of masks or landmarks than cameras.
-    pub fn push(&mut self, time: f64, frame: &TakeFrame) -> Result<Option<TrackedFrame>> {
+    /// No time or one that is not after the last one, or another number of masks or landmarks than cameras.
+    pub fn push(&mut self, frame: &TakeFrame) -> Result<Option<TrackedFrame>> {
+        let time = frame.seconds.ok_or(Error::NoFrameTime { frame: None })?;
         if let Some(last) = &self.last
             && time.partial_cmp(&last.time) != Some(Ordering::Greater)
         {
