@@ -53,6 +53,16 @@ pub(crate) fn drawn_of(hand: &HandShape, count: usize) -> Drawn {
     drawn_in(hand, (0..count).map(pose))
 }
 
+/// The same of a hand that is turned about its forearm by so much in all, radians.
+pub(crate) fn drawn_turning(count: usize, turned: f64) -> Drawn {
+    let turning = |frame: usize| {
+        let mut pose = pose(frame);
+        pose[Dof::ThetaZ] = turned * (frame as f64 / (count - 1) as f64 - 0.5);
+        pose
+    };
+    drawn_in(&hand(), (0..count).map(turning))
+}
+
 /// The same of a hand that comes along its arm, from so many frames away.
 pub(crate) fn drawn_coming(hand: &HandShape, count: usize, away: usize) -> Drawn {
     /// How far it comes from frame to frame, mm.
