@@ -12,16 +12,19 @@ pub(crate) fn nearest_mean(
     queries: MatRef<'_, f64>,
     count: usize,
 ) -> Mat<f64> {
-    let distance = |a: usize, b: usize| -> f64 {
-        (0..train.nrows()).map(|k| (train[(k, a)] - queries[(k, b)]).powi(2)).sum()
+    let columns = |x: MatRef<'_, f64>| -> Vec<Vec<f64>> {
+        (0..x.ncols()).map(|i| x.col(i).iter().copied().collect()).collect()
     };
-    let nearest = |query: usize| -> Vec<usize> {
-        let mut order: Vec<(f64, usize)> =
-            (0..train.ncols()).map(|i| (distance(i, query), i)).collect();
+    let train = columns(train);
+    let nearest = |query: &Vec<f64>| -> Vec<usize> {
+        let distance = |sample: &Vec<f64>| -> f64 {
+            sample.iter().zip(query).map(|(a, b)| (a - b).powi(2)).sum()
+        };
+        let mut order: Vec<(f64, usize)> = train.iter().map(distance).zip(0..).collect();
         order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         order.into_iter().take(count).map(|(_, i)| i).collect()
     };
-    let chosen: Vec<Vec<usize>> = (0..queries.ncols()).into_par_iter().map(nearest).collect();
+    let chosen: Vec<Vec<usize>> = columns(queries).par_iter().map(nearest).collect();
     Mat::from_fn(targets.nrows(), queries.ncols(), |row, query| {
         let chosen = &chosen[query];
         chosen.iter().map(|&i| targets[(row, i)]).sum::<f64>() / chosen.len() as f64
