@@ -19,6 +19,20 @@ fn slow_assignment(samples: &[f32], centres: &[f32]) -> Vec<(f64, usize)> {
     samples.chunks_exact(DIM).map(nearest).collect()
 }
 
+/// Which centres some sample is nearest to as nearly as to another one.
+fn disputed(samples: &[f32], centres: &[f32]) -> Vec<bool> {
+    let mut disputed = vec![false; centres.len() / DIM];
+    for (sample, (least, _)) in samples.chunks_exact(DIM).zip(slow_assignment(samples, centres)) {
+        let distances = centres.chunks_exact(DIM).map(|centre| chi_squared(sample, centre));
+        let near: Vec<usize> =
+            distances.zip(0..).filter(|(far, _)| far - least < 1e-6).map(|(_, k)| k).collect();
+        if near.len() > 1 {
+            near.into_iter().for_each(|centre| disputed[centre] = true);
+        }
+    }
+    disputed
+}
+
 fn slow_distortion(samples: &[f32], centres: &[f32]) -> f64 {
     let assignment = slow_assignment(samples, centres);
     assignment.iter().map(|nearest| nearest.0).sum::<f64>() / assignment.len() as f64
@@ -44,7 +58,8 @@ proptest! {
         prop_assert!((codebook.scale() - slow_distortion(&samples, codebook.centres())).abs() < 1e-6);
     }
 
-    /// One iteration against a slow one: the first assignment leaves the seeds as they are.
+    /// One iteration against a slow one: the first assignment leaves the seeds as they are. Centres that a sample
+    /// is as near to as to another, by single precision, are left aside.
     #[test]
     fn an_iteration_agrees_with_the_slow_version(seed: u64, centres in 2..40_usize) {
         let samples = histograms(600, seed);
@@ -54,7 +69,8 @@ proptest! {
         };
         let (seeds, moved) = (run(1).codebook, run(2));
         let assignment = slow_assignment(&samples, seeds.centres());
-        for centre in 0..centres {
+        let disputed = disputed(&samples, seeds.centres());
+        for centre in (0..centres).filter(|&centre| !disputed[centre]) {
             let members: Vec<&[f32]> = samples
                 .chunks_exact(DIM)
                 .zip(&assignment)

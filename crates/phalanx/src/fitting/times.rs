@@ -3,6 +3,9 @@
 use super::take_frame::TakeFrame;
 use crate::error::{Error, Result};
 
+/// What times are rounded to, in usual steps, a power of two: an even pace is then exactly even.
+const EXACT: f64 = 1.0 / 1048576.0;
+
 /// The times of a take's frames, of which one follows the other at a usual pace: the median of their distances is 1.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Times(Vec<f64>);
@@ -35,7 +38,9 @@ impl Times {
         }
         steps.sort_by(f64::total_cmp);
         let pace = steps.get(steps.len() / 2).copied().unwrap_or(1.0);
-        Ok(Self(seconds.iter().map(|time| time / pace).collect()))
+        let first = seconds.first().copied().unwrap_or(0.0);
+        let rounded = |time: &f64| ((time - first) / pace / EXACT).round() * EXACT;
+        Ok(Self(seconds.iter().map(rounded).collect()))
     }
 
     /// How far two frames are from each other.
@@ -61,6 +66,8 @@ mod tests {
             [1.0, 6.0, 9.0]
         );
         assert_eq!(of(&[None; 3]).unwrap(), Times::even(3));
+        let even: Vec<Option<f64>> = (7..207).map(|k| Some(f64::from(k) / 30.0)).collect();
+        assert_eq!(of(&even).unwrap(), Times::even(200));
         assert_eq!(of(&[Some(2.0)]).unwrap().between(0, 0), 0.0);
         assert_eq!(of(&[]).unwrap(), Times::even(0));
     }

@@ -4,6 +4,10 @@ use faer::{Mat, MatRef};
 
 use crate::linalg;
 
+/// The prior adds a unit to the system of the weights: where rounding errors are more than this, little is left of it,
+/// and another order of the same sums may find the system singular.
+const LOST: f64 = 1e-3;
+
 /// The evidence of targets that share their vectors, in log widths and log precisions.
 pub(super) struct Widths<'a> {
     /// Standardised inputs, K×n.
@@ -47,6 +51,10 @@ impl Widths<'_> {
             let unit = if i == k { 1.0 } else { 0.0 };
             d[i] * gram[(i, k)] * d[k] + unit
         });
+        let greatest = (0..p).map(|k| system[(k, k)]).fold(0.0, f64::max);
+        if greatest * f64::EPSILON > LOST {
+            return None;
+        }
         let cholesky = linalg::cholesky(system)?;
         let mut factor = linalg::lower_inverse(cholesky.as_ref());
         for (k, d) in d.iter().enumerate() {

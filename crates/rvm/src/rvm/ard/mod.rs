@@ -127,12 +127,12 @@ impl ArdRvm {
             let gained = objective.last().map_or(f64::INFINITY, |last| vectors.evidence - last);
             objective.push(vectors.evidence);
             let converged = gained <= self.rvm.tolerance || vectors.columns.is_empty();
-            if converged || objective.len() == self.rounds {
+            learning.vectors = vectors;
+            let is_last = converged || objective.len() == self.rounds;
+            if is_last || !learning.climb_widths(self) {
                 let trace = Trace { converged, objective };
                 return Ok(Fit { model: fit.model, report: Report::new(vec![trace], None) });
             }
-            learning.vectors = vectors;
-            learning.climb_widths(self)?;
         }
     }
 
@@ -196,8 +196,8 @@ impl Learning {
         rvm.resume(&design, &self.vectors, observe)
     }
 
-    /// The best widths for these vectors.
-    fn climb_widths(&mut self, settings: &ArdRvm) -> Result<()> {
+    /// The best widths for these vectors; whether working precision tells any.
+    fn climb_widths(&mut self, settings: &ArdRvm) -> bool {
         let z = crate::linalg::subrows(self.problem.z.as_ref(), &self.inputs);
         let all = &self.problem.y;
         let varying: Vec<usize> =
@@ -213,8 +213,7 @@ impl Learning {
         };
         let mut at = self.widths.clone();
         at.extend(self.vectors.alpha.iter().map(|alpha| alpha.ln()));
-        let (value, gradient) =
-            widths.evaluate(&at).ok_or(Error::Singular { size: self.vectors.columns.len() })?;
+        let Some((value, gradient)) = widths.evaluate(&at) else { return false };
         let start = Point { at, value, gradient };
         let found = lbfgs::maximise(start, settings.steps, settings.rvm.tolerance, |at| {
             widths.evaluate(at)
@@ -222,6 +221,6 @@ impl Learning {
         let (logs, alphas) = found.at.split_at(self.widths.len());
         self.widths = logs.to_vec();
         self.vectors.alpha = alphas.iter().map(|log| log.exp()).collect();
-        Ok(())
+        true
     }
 }
