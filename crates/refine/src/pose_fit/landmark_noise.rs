@@ -116,10 +116,11 @@ mod tests {
             let one = share.powi(2) * variance_of(&of_frames, DVec2::ZERO);
             let other = (1.0 - share).powi(2) * variance_of(&of_joints, mean);
             let variance = 1.0 + one + other;
+            // Of 21 joints one that is far off counts in part as something else.
             prop_assert!((noise.deviation / (3.0 * variance.sqrt()) - 1.0).abs() < 0.15);
-            prop_assert!((noise.persistent - other / variance).abs() < 0.16, "{noise:?}, {share}");
+            prop_assert!((noise.persistent - other / variance).abs() < 0.25, "{noise:?}, {share}");
             let within = (noise.correlated - 1.0) / 19.0;
-            prop_assert!((within - one / variance).abs() < 0.16, "{noise:?}, {share}");
+            prop_assert!((within - one / variance).abs() < 0.25, "{noise:?}, {share}");
         }
     }
 
