@@ -8,6 +8,7 @@ mod demo;
 mod doctor;
 mod estimate;
 mod evaluate;
+mod finding;
 mod forecast;
 mod form;
 mod import_calibration;

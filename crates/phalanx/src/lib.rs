@@ -39,7 +39,7 @@ pub use features::samples::{descriptors, targets};
 pub use fitting::{
     Delay, FitDoubt, FrameFit, LandmarkFit, Missing, Proportions, TakeFit, TakeFrame, TakeSettings,
     TrackSettings, TrackedFrame, Tracker, TrackerState, ViewFit, VolumeEstimate, estimate_volume,
-    fit_frame, fit_take,
+    fit_frame, fit_take, trusted_volume,
 };
 pub use images::decode::decode_picture;
 pub use images::overlay::{draw_overlay, draw_window_overlay, working_window};

@@ -3,7 +3,7 @@
 use phalanx::Estimator;
 use phalanx_camera::{Camera, Rig};
 
-use super::finding::Finding;
+use crate::finding::Finding;
 use crate::rig::check::is_alike;
 
 pub(super) fn of_rig(rig: &Rig) -> Vec<Finding> {

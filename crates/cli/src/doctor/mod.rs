@@ -1,7 +1,6 @@
 //! `phalanx doctor`: what works, what is wrong, and what to do next.
 
 mod consistency;
-mod finding;
 mod pictures;
 mod programs;
 
@@ -12,12 +11,12 @@ use anyhow::Result;
 use clap::Args;
 use serde_json::json;
 
+use crate::finding::{Finding, State};
 use crate::form::Form;
 use crate::input;
 use crate::recording::source::RecordingArguments;
 use crate::rig::check;
 use crate::segment::SegmentArguments;
-use finding::{Finding, State};
 
 #[derive(Args)]
 pub(crate) struct Arguments {

@@ -1,11 +1,12 @@
 //! What the cameras see, against the calibration.
 
 use anyhow::Result;
-use phalanx::{FitDoubt, Missing, NoProgress, TakeFit, TakeSettings, fit_take};
-use phalanx_camera::{Camera, Rig};
+use phalanx::{NoProgress, TakeSettings, fit_take};
+use phalanx_camera::Rig;
 use phalanx_hand::Side;
 
-use super::finding::Finding;
+use crate::finding::Finding;
+use crate::recording::agreement::{agreement, named};
 use crate::recording::source::{RecordingArguments, Source};
 
 /// Moments that are looked at.
@@ -43,51 +44,4 @@ fn seen(rig: &Rig, recording: &RecordingArguments) -> Result<Vec<Finding>> {
         findings.extend(views.map(|(view, camera)| agreement(camera, view, &fit)));
     }
     Ok(findings)
-}
-
-fn named(camera: &Camera) -> String {
-    format!("camera '{}'", camera.name)
-}
-
-/// Whether what a camera shows meets what the others show in space. One that contradicts them at most moments
-/// does not stand where the calibration has it, or its frames are of other moments.
-fn agreement(camera: &Camera, view: usize, fit: &TakeFit) -> Finding {
-    let views = || fit.frames.iter().map(|frame| frame.views[view]);
-    let moments = fit.frames.len();
-    let count = |reason| views().filter(|view| view.missing == Some(reason)).count();
-    let (absent, contradicts) = (count(Missing::NoHand), count(Missing::Disagrees));
-    let what = named(camera);
-    if 2 * contradicts > moments {
-        let text = format!(
-            "it contradicts the other cameras at {contradicts} of {moments} moments: it was moved after the \
-             calibration, the calibration is wrong, or its frames are of other moments"
-        );
-        return Finding::broken(what, text);
-    }
-    if 2 * absent > moments {
-        let text = format!(
-            "no hand where the others see it, at {absent} of {moments} moments: look at the light, or give masks"
-        );
-        return Finding::broken(what, text);
-    }
-    let overlaps: Vec<f64> = views().filter_map(|view| view.overlap).collect();
-    let mean = overlaps.iter().sum::<f64>() / overlaps.len().max(1) as f64;
-    let text = format!("a fitted hand overlaps what it sees by {mean:.2} on average");
-    let is_doubt = |doubt: &&FitDoubt| matches!(doubt, FitDoubt::PoorFit { view: of, .. } | FitDoubt::CutOff { view: of } if *of == view);
-    let doubts = fit.frames.iter().filter_map(|frame| frame.doubts.iter().find(is_doubt));
-    let doubted = doubts.count();
-    if 2 * doubted > moments {
-        let text = format!(
-            "{text}, which is not as of a hand, or of one that is cut off, at {doubted} of {moments} moments: look at \
-             the light, or give masks"
-        );
-        return Finding::doubtful(what, text);
-    }
-    if contradicts + absent == 0 {
-        return Finding::good(what, text);
-    }
-    let text = format!(
-        "{text}; of {moments} moments it contradicts at {contradicts}, shows no hand at {absent}"
-    );
-    Finding::doubtful(what, text)
 }

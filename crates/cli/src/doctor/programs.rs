@@ -4,7 +4,7 @@ use std::process::Command;
 
 use phalanx::Maker;
 
-use super::finding::Finding;
+use crate::finding::Finding;
 
 pub(super) fn findings() -> Vec<Finding> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);

@@ -1,5 +1,6 @@
 //! What one camera recorded: a folder of pictures or a video, read frame by frame.
 
+pub(crate) mod agreement;
 pub(crate) mod assign;
 mod ffmpeg;
 pub(crate) mod landmarks;

@@ -5,11 +5,13 @@ use std::str::FromStr;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use glam::DVec3;
-use phalanx::{VolumeEstimate, estimate_volume};
+use phalanx::{TakeSettings, VolumeEstimate, fit_take, trusted_volume};
 use phalanx_camera::{Camera, Volume};
 use phalanx_hand::{HandShape, Side};
 
+use crate::finding::{Finding, State};
 use crate::progress::Bar;
+use crate::recording::agreement::agreement;
 use crate::recording::source::Source;
 
 /// Side of the cube in which the hand works unless it is said, mm.
@@ -84,7 +86,7 @@ impl VolumeArguments {
     }
 }
 
-/// Where the hand works in some moments of a recording.
+/// Where the hand works in some moments of a recording; cameras that do not see one hand are doubted.
 pub(super) fn seen(source: &Source, side: Side) -> Result<VolumeEstimate> {
     let mut failures = Vec::new();
     let frames = source.reader()?.read_some(MOMENTS, &mut failures);
@@ -94,5 +96,14 @@ pub(super) fn seen(source: &Source, side: Side) -> Result<VolumeEstimate> {
         eprintln!("phalanx: {said}");
     }
     let hand = HandShape { side, ..HandShape::adult() };
-    Ok(estimate_volume(&source.cameras, &frames, &hand, &Bar::new())?)
+    let settings = TakeSettings { hand, ..TakeSettings::default() };
+    let fit = fit_take(&source.cameras, &frames, &settings, &Bar::new())?;
+    if source.cameras.len() > 1 {
+        let views = source.cameras.iter().enumerate();
+        let findings = views.map(|(view, camera)| agreement(camera, view, &fit));
+        for Finding { what, text, .. } in findings.filter(|finding| finding.state != State::Good) {
+            eprintln!("doubt: {what}: {text}");
+        }
+    }
+    Ok(trusted_volume(&fit)?)
 }

@@ -142,6 +142,16 @@ fn a_camera_that_contradicts_the_others_is_named() {
     let broken = in_state(&report, "broken");
     assert_eq!(broken.len(), 1, "{broken:?}");
     assert!(broken[0].contains(&moved.cameras[1].name) && broken[0].contains("it contradicts"));
+
+    // Two cameras that stand for each other: where the hand works is not to be had from them.
+    let mut exchanged = Rig::from_toml(&rig).unwrap();
+    let [one, other] = [0, 2].map(|camera| exchanged.cameras[camera].name.clone());
+    (exchanged.cameras[0].name, exchanged.cameras[2].name) = (other, one);
+    desk.write("exchanged.toml", exchanged.to_toml().unwrap().as_bytes());
+    let check = ["rig", "check", "exchanged.toml", "phalanx-demo/recording", "--mask"];
+    let outcome = run(desk.folder(), check);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    assert!(outcome.err.contains("doubt: camera '"), "{}", outcome.err);
 }
 
 #[test]

@@ -38,4 +38,4 @@ pub use single::fit_frame;
 pub use take::{Proportions, TakeFit, TakeSettings, fit_take};
 pub use take_frame::TakeFrame;
 pub use tracking::{Delay, TrackSettings, TrackedFrame, Tracker, TrackerState};
-pub use volume::estimate_volume;
+pub use volume::{estimate_volume, trusted_volume};

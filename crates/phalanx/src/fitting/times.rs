@@ -4,7 +4,7 @@ use super::take_frame::TakeFrame;
 use crate::error::{Error, Result};
 
 /// What times are rounded to, in usual steps, a power of two: an even pace is then exactly even.
-const EXACT: f64 = 1.0 / 1048576.0;
+const EXACT: f64 = 1.0 / 1_048_576.0;
 
 /// The times of a take's frames, of which one follows the other at a usual pace: the median of their distances is 1.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use phalanx_hand::HandShape;
 use super::consensus::{Posed, VolumeEstimate};
 use super::report::{FitDoubt, FrameFit};
 use super::starts;
-use super::take::{Proportions, TakeSettings, fit_take};
+use super::take::{Proportions, TakeFit, TakeSettings, fit_take};
 use super::take_frame::TakeFrame;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
@@ -14,8 +14,7 @@ use crate::progress::Progress;
 /// Finds out where a hand works from what cameras saw in some frames, which are fitted together.
 ///
 /// Nothing is assumed of where fingers or back of the hand point. `hand` says of which side it is; a mean one
-/// will do ([`HandShape::adult`]), since its proportions are fitted. Frames that nothing speaks against count;
-/// where there are none, all in which a hand is seen.
+/// will do ([`HandShape::adult`]), since its proportions are fitted. Frames count as for [`trusted_volume`].
 ///
 /// # Errors
 /// Frames with another number of masks or landmarks than cameras, or without any hand.
@@ -26,7 +25,15 @@ pub fn estimate_volume(
     progress: &dyn Progress,
 ) -> Result<VolumeEstimate> {
     let settings = TakeSettings { hand: hand.clone(), proportions: Proportions::FromTake };
-    let take = fit_take(cameras, frames, &settings, progress)?;
+    trusted_volume(&fit_take(cameras, frames, &settings, progress)?)
+}
+
+/// Where a take's hand works, by the frames that nothing speaks against; where there are none, by all in which a hand
+/// is seen.
+///
+/// # Errors
+/// A take without any hand.
+pub fn trusted_volume(take: &TakeFit) -> Result<VolumeEstimate> {
     let rest = take.volume.volume.rest_frame();
     let posed = |is_counted: fn(&FrameFit) -> bool| -> Vec<Posed> {
         let counted = take.frames.iter().filter(|fit| is_counted(fit));

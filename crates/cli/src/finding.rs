@@ -4,16 +4,16 @@ use serde::{Serialize, Serializer};
 
 /// A finding.
 #[derive(Serialize)]
-pub(super) struct Finding {
+pub(crate) struct Finding {
     /// Of what.
-    pub(super) what: String,
-    pub(super) state: State,
+    pub(crate) what: String,
+    pub(crate) state: State,
     /// What is so, and what helps.
-    pub(super) text: String,
+    pub(crate) text: String,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum State {
+pub(crate) enum State {
     Good,
     /// Results may suffer, or something cannot be done.
     Doubtful,
@@ -22,7 +22,7 @@ pub(super) enum State {
 }
 
 impl State {
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Good => "good",
             Self::Doubtful => "doubt",
@@ -42,15 +42,15 @@ impl Finding {
         Self { what: what.into(), state, text: text.into() }
     }
 
-    pub(super) fn good(what: impl Into<String>, text: impl Into<String>) -> Self {
+    pub(crate) fn good(what: impl Into<String>, text: impl Into<String>) -> Self {
         Self::new(State::Good, what, text)
     }
 
-    pub(super) fn doubtful(what: impl Into<String>, text: impl Into<String>) -> Self {
+    pub(crate) fn doubtful(what: impl Into<String>, text: impl Into<String>) -> Self {
         Self::new(State::Doubtful, what, text)
     }
 
-    pub(super) fn broken(what: impl Into<String>, text: impl Into<String>) -> Self {
+    pub(crate) fn broken(what: impl Into<String>, text: impl Into<String>) -> Self {
         Self::new(State::Broken, what, text)
     }
 }

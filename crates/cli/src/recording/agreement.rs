@@ -1,0 +1,54 @@
+//! Whether the cameras of a recording see one hand.
+
+use phalanx::{FitDoubt, Missing, TakeFit};
+use phalanx_camera::Camera;
+
+use crate::finding::Finding;
+
+/// How a finding calls a camera.
+pub(crate) fn named(camera: &Camera) -> String {
+    format!("camera '{}'", camera.name)
+}
+
+/// Whether what a camera shows meets what the others show in space. One that contradicts them at most moments
+/// does not stand where the calibration has it, or its frames are of other moments.
+pub(crate) fn agreement(camera: &Camera, view: usize, fit: &TakeFit) -> Finding {
+    let views = || fit.frames.iter().map(|frame| frame.views[view]);
+    let moments = fit.frames.len();
+    let count = |reason| views().filter(|view| view.missing == Some(reason)).count();
+    let (absent, contradicts) = (count(Missing::NoHand), count(Missing::Disagrees));
+    let what = named(camera);
+    if 2 * contradicts > moments {
+        let text = format!(
+            "it contradicts the other cameras at {contradicts} of {moments} moments: it was moved after the \
+             calibration, the calibration is wrong, or its frames are of other moments"
+        );
+        return Finding::broken(what, text);
+    }
+    if 2 * absent > moments {
+        let text = format!(
+            "no hand where the others see it, at {absent} of {moments} moments: look at the light, or give masks"
+        );
+        return Finding::broken(what, text);
+    }
+    let overlaps: Vec<f64> = views().filter_map(|view| view.overlap).collect();
+    let mean = overlaps.iter().sum::<f64>() / overlaps.len().max(1) as f64;
+    let text = format!("a fitted hand overlaps what it sees by {mean:.2} on average");
+    let is_doubt = |doubt: &&FitDoubt| matches!(doubt, FitDoubt::PoorFit { view: of, .. } | FitDoubt::CutOff { view: of } if *of == view);
+    let doubts = fit.frames.iter().filter_map(|frame| frame.doubts.iter().find(is_doubt));
+    let doubted = doubts.count();
+    if 2 * doubted > moments {
+        let text = format!(
+            "{text}, which is not as of a hand, or of one that is cut off, at {doubted} of {moments} moments: look at \
+             the light, or give masks"
+        );
+        return Finding::doubtful(what, text);
+    }
+    if contradicts + absent == 0 {
+        return Finding::good(what, text);
+    }
+    let text = format!(
+        "{text}; of {moments} moments it contradicts at {contradicts}, shows no hand at {absent}"
+    );
+    Finding::doubtful(what, text)
+}
