@@ -16,14 +16,10 @@ pub struct ForearmAxis {
 /// How much of the forearm tells its direction, in widths.
 const REACH: f64 = 1.5;
 
-/// Nearer to the axis than this, in widths, lies what is between the forearm's sides: half as far as
-/// they are.
-const BETWEEN: f64 = 0.25;
-
 /// The stretch that is looked at turns with the direction that is found in it.
 const ROUNDS: usize = 2;
 
-/// Relative size below which a spread is taken for zero, and a point for one on the cut.
+/// Relative size below which a spread is taken for zero, and a point for one on the cut or on the axis.
 const NEGLIGIBLE: f64 = 1e-9;
 
 impl ForearmAxis {
@@ -55,16 +51,16 @@ impl ForearmAxis {
     }
 
     /// The direction common to both sides of the forearm, by least squares with an offset of its
-    /// own for each. A point counts less the further ahead and the nearer to the axis, down to nothing,
-    /// so that none makes a difference by coming into reach or to the other side.
+    /// own for each. A point counts less the further ahead, down to nothing, so that none makes
+    /// a difference by coming into reach.
     fn along_sides(&self, points: &[[f64; 2]]) -> Result<[f64; 2]> {
         let across = perpendicular(self.direction);
         let mut sides = [Side::default(); 2];
         for &point in points.iter().filter(|&&point| self.is_ahead(point)) {
             let (s, t) = (self.ahead(point), dot(sub(point, self.start), across));
-            let reached = 1.0 - s / (REACH * self.width);
-            let weight = reached * (t.abs() / (BETWEEN * self.width)).min(1.0);
-            if weight > 0.0 {
+            let weight = 1.0 - s / (REACH * self.width);
+            // Of a point on the axis rounding would decide which side it is of.
+            if weight > 0.0 && t.abs() > NEGLIGIBLE * self.width {
                 sides[usize::from(t > 0.0)].add(weight, s, t);
             }
         }
