@@ -27,7 +27,9 @@ fn disputed(samples: &[f32], centres: &[f32]) -> Vec<bool> {
         let near: Vec<usize> =
             distances.zip(0..).filter(|(far, _)| far - least < 1e-6).map(|(_, k)| k).collect();
         if near.len() > 1 {
-            near.into_iter().for_each(|centre| disputed[centre] = true);
+            for centre in near {
+                disputed[centre] = true;
+            }
         }
     }
     disputed
