@@ -45,11 +45,14 @@ fn detected_take(count: usize) -> Drawn {
 }
 
 fn without_masks(frames: &[TakeFrame]) -> Vec<TakeFrame> {
-    frames.iter().map(|frame| TakeFrame::of_landmarks(frame.landmarks.clone())).collect()
+    let of =
+        |frame: &TakeFrame| TakeFrame { masks: vec![None; frame.masks.len()], ..frame.clone() };
+    frames.iter().map(of).collect()
 }
 
 fn without_landmarks(frames: &[TakeFrame]) -> Vec<TakeFrame> {
-    frames.iter().map(|frame| TakeFrame::of_masks(frame.masks.clone())).collect()
+    let of = |frame: &TakeFrame| TakeFrame { landmarks: Vec::new(), ..frame.clone() };
+    frames.iter().map(of).collect()
 }
 
 fn errors(fits: &[FrameFit], joints: &[[DVec3; JOINTS]]) -> Vec<f64> {
