@@ -85,12 +85,12 @@ const ROUNDS: usize = 4;
 /// Fits a whole take: where the hand works, its proportions, and its pose in every frame.
 ///
 /// Frames are in the order of time, and may be further apart in some places than in others where they say when they
-/// were ([`TakeFrame::at`]); without times they follow each other at one pace. Nothing else is needed; the same frames give the same fit, at any
-/// number of threads.
+/// were ([`TakeFrame::at`]); without times they follow each other at one pace. Nothing else is needed; the same
+/// frames give the same fit, at any number of threads.
 ///
 /// # Errors
-/// Frames with another number of masks or landmarks than cameras or not in the order of time, or no frame in which any camera sees a
-/// hand: landmarks alone need two cameras.
+/// Frames with another number of masks or landmarks than cameras or not in the order of time, or no frame in which
+/// any camera sees a hand: landmarks alone need two cameras.
 pub fn fit_take(
     cameras: &[Camera],
     frames: &[TakeFrame],
