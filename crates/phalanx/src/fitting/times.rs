@@ -43,9 +43,9 @@ impl Times {
         Ok(Self(seconds.iter().map(rounded).collect()))
     }
 
-    /// How far two frames are from each other.
+    /// How far two frames are from each other: never nothing, which motions are divided by.
     pub(super) fn between(&self, one: usize, other: usize) -> f64 {
-        (self.0[one] - self.0[other]).abs()
+        (self.0[one] - self.0[other]).abs().max(EXACT)
     }
 }
 
@@ -68,7 +68,8 @@ mod tests {
         assert_eq!(of(&[None; 3]).unwrap(), Times::even(3));
         let even: Vec<Option<f64>> = (7..207).map(|k| Some(f64::from(k) / 30.0)).collect();
         assert_eq!(of(&even).unwrap(), Times::even(200));
-        assert_eq!(of(&[Some(2.0)]).unwrap().between(0, 0), 0.0);
+        let close = of(&[0.0, 1.0, 1.0 + 1e-9, 2.0].map(Some)).unwrap();
+        assert!(close.between(1, 2) > 0.0);
         assert_eq!(of(&[]).unwrap(), Times::even(0));
     }
 
