@@ -223,8 +223,7 @@ impl FrameFitter<'_> {
         evidence: &Seen,
         starts: &[Pose],
     ) -> Result<Vec<PoseFit>> {
-        let glanced = self.screen_at(GLANCE, rest, evidence, starts)?;
-        let screened = self.screen(rest, evidence, &distinct(&glanced, SCREENED))?;
+        let screened = self.screen_few(rest, evidence, starts)?;
         let mut fits: Vec<PoseFit> = Vec::new();
         for start in distinct(&screened, KEPT) {
             match self.refinement.fit(self.hand, rest, evidence, &start, self.prior) {
@@ -236,6 +235,17 @@ impl FrameFitter<'_> {
         }
         fits.sort_by(|a, b| a.energy.total_cmp(&b.energy));
         Ok(fits)
+    }
+
+    /// Of many starts the few that are best after one step, after some more, the best first.
+    pub(super) fn screen_few(
+        &self,
+        rest: &DAffine3,
+        evidence: &Seen,
+        starts: &[Pose],
+    ) -> Result<Vec<Screened>> {
+        let glanced = self.screen_at(GLANCE, rest, evidence, starts)?;
+        self.screen(rest, evidence, &distinct(&glanced, SCREENED))
     }
 
     /// Starts after a few coarse steps, the best first.

@@ -19,6 +19,9 @@ const PLACEMENTS: usize = 8;
 const MIDDLE: f64 = 0.42;
 const REACH: f64 = 0.75;
 
+/// How far such a ball may be off and still hold the hand with its fingers stretched out, as a share of its radius.
+const SPARE: f64 = 1.0 - (1.0 - MIDDLE) / REACH;
+
 /// How far behind the wrist an arm is taken to be known, as a share of the hand's length: half a palm's
 /// width. Further back arms differ more from the mean arm, and end in sleeves.
 const KNOWN_ARM: f64 = 0.2;
@@ -26,6 +29,16 @@ const KNOWN_ARM: f64 = 0.2;
 /// The ball that holds a hand of some length.
 pub(super) fn ball_of(wrist: DVec3, arm: DVec3, length: f64) -> BoundingSphere {
     BoundingSphere { middle: wrist + arm * (MIDDLE * length), radius: REACH * length }
+}
+
+/// Whether one ball holds the hand that another is around, also stretched out.
+pub(super) fn holds(one: BoundingSphere, other: BoundingSphere) -> bool {
+    one.middle.distance(other.middle) < SPARE * one.radius
+}
+
+/// Whether most of a hand that another ball is around is in one.
+pub(super) fn holds_most(one: BoundingSphere, other: BoundingSphere) -> bool {
+    one.middle.distance(other.middle) < 0.5 * one.radius
 }
 
 /// The arm of a hand of some length as far as it is known.

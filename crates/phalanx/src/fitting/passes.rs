@@ -163,7 +163,7 @@ pub(super) fn agreeing(
     let agreeing = |found: &Option<Found>| {
         let agreeing = found.as_ref().map(|own| views::without_disagreeing(fitter, own));
         progress.step();
-        agreeing.transpose()
+        Ok(agreeing.transpose()?.map(|(agreeing, _)| agreeing))
     };
     found.par_iter().map(agreeing).collect()
 }

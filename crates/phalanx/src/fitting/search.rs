@@ -1,13 +1,13 @@
 //! Looking for a hand in one frame: where it may be, and which of the places views agree with.
 
 use glam::DAffine3;
-use phalanx_hand::{Dof, Pose};
+use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::{Evidence, LandmarkObservation, Screened, SilhouetteObservation};
 
 use super::found::{Found, views_used};
 use super::frame_fit::{FrameFitter, Seen, distinct};
 use super::misfit;
-use super::observation::Sight;
+use super::observation::{Sight, holds, holds_most};
 use super::points::palm_frames;
 use super::starts;
 use crate::error::Result;
@@ -25,6 +25,30 @@ const STARTS: usize = 2;
 struct Guess {
     rest: DAffine3,
     starts: Vec<Pose>,
+    follow: Follow,
+}
+
+/// Which of a guess's starts are followed a few steps.
+#[derive(Clone, Copy)]
+enum Follow {
+    All,
+    Few,
+}
+
+impl Guess {
+    fn at(rest: DAffine3) -> Self {
+        Self { rest, starts: starts::extremes(&Pose::REST).to_vec(), follow: Follow::All }
+    }
+
+    /// Adds the poses to begin with where the hand's frame may also be.
+    fn add(&mut self, frame: &DAffine3, hand: &HandShape) {
+        let moved = |pose| starts::in_frame(&pose, frame, &self.rest, hand);
+        for start in starts::extremes(&Pose::REST).map(moved) {
+            if !self.starts.contains(&start) {
+                self.starts.push(start);
+            }
+        }
+    }
 }
 
 /// A guess after a few steps from each of its starts.
@@ -47,7 +71,7 @@ pub(super) fn anywhere(fitter: &FrameFitter<'_>, sight: &Sight) -> Result<Option
             starts::extremes(&pose)
         });
         let rest = starts::frame_of(placement.wrist, placement.arm);
-        Guess { rest, starts: turned.collect() }
+        Guess { starts: turned.collect(), ..Guess::at(rest) }
     };
     let guesses = by_points(fitter, sight).chain(sight.placements.iter().map(guess));
     best_of(fitter, sight, guesses)
@@ -55,8 +79,7 @@ pub(super) fn anywhere(fitter: &FrameFitter<'_>, sight: &Sight) -> Result<Option
 
 /// Where the points of two cameras say that the hand is.
 fn by_points(fitter: &FrameFitter<'_>, sight: &Sight) -> impl Iterator<Item = Guess> {
-    let at = |rest: DAffine3| Guess { rest, starts: starts::extremes(&Pose::REST).to_vec() };
-    palm_frames(&sight.points, fitter.hand.side).into_iter().take(GUESSES).map(at)
+    palm_frames(&sight.points, fitter.hand.side).into_iter().take(GUESSES).map(Guess::at)
 }
 
 /// Looks for a hand near where hands of other frames are: `frames` are theirs.
@@ -65,14 +88,38 @@ pub(super) fn near(
     sight: &Sight,
     frames: &[DAffine3],
 ) -> Result<Option<Found>> {
-    let at = |rest: DAffine3| Guess { rest, starts: starts::extremes(&Pose::REST).to_vec() };
+    let near = frames_near(sight, frames).map(Guess::at);
+    best_of(fitter, sight, by_points(fitter, sight).chain(near))
+}
+
+/// The same of a hand that is known: guesses that are near each other are looked at in the same crops, and only the
+/// best of their poses are followed.
+pub(super) fn near_together(
+    fitter: &FrameFitter<'_>,
+    sight: &Sight,
+    frames: &[DAffine3],
+) -> Result<Option<Found>> {
+    let is_near =
+        |one: &DAffine3, other: &DAffine3| holds_most(fitter.ball(one), fitter.ball(other));
+    let mut guesses: Vec<Guess> = Vec::new();
+    for frame in frames_near(sight, frames) {
+        match guesses.iter_mut().find(|guess| is_near(&guess.rest, &frame)) {
+            Some(guess) => guess.add(&frame, fitter.hand),
+            None => guesses.push(Guess { follow: Follow::Few, ..Guess::at(frame) }),
+        }
+    }
+    let found = best_of(fitter, sight, by_points(fitter, sight).chain(guesses))?;
+    Ok(found.map(|found| centred(fitter, sight, found)))
+}
+
+/// Where a hand may be whose frame is like some others: where this frame shows one, and where they are.
+fn frames_near(sight: &Sight, frames: &[DAffine3]) -> impl Iterator<Item = DAffine3> {
     let own = sight.placements.iter().take(GUESSES).flat_map(|placement| {
         let turned = frames.iter().map(|frame| starts::turned_to(placement, frame));
         let moved = |frame: &DAffine3| DAffine3 { translation: placement.wrist, ..*frame };
         turned.chain(frames.iter().map(moved))
     });
-    let near = own.chain(frames.iter().copied()).map(at);
-    best_of(fitter, sight, by_points(fitter, sight).chain(near))
+    own.chain(frames.iter().copied())
 }
 
 /// The best fit among some guesses.
@@ -107,9 +154,18 @@ fn best_of(
     Ok(best)
 }
 
+/// A frame whose crops hold its hand.
+fn centred(fitter: &FrameFitter<'_>, sight: &Sight, found: Found) -> Found {
+    let ball = fitter.ball(&found.frame(fitter.hand));
+    if holds(fitter.ball(&found.rest), ball) {
+        return found;
+    }
+    Found { crops: sight.crops(ball), ..found }
+}
+
 /// A guess after a few steps; `None` where no view shows anything there.
 fn screened(fitter: &FrameFitter<'_>, sight: &Sight, guess: Guess) -> Result<Option<Screening>> {
-    let Guess { rest, starts } = guess;
+    let Guess { rest, starts, follow } = guess;
     let crops = sight.crops(fitter.ball(&rest));
     let left_out = fitter.weights.left_out(sight.points.len());
     let evidence = fitter.seen(&crops, &sight.points, &left_out, &rest);
@@ -117,7 +173,10 @@ fn screened(fitter: &FrameFitter<'_>, sight: &Sight, guess: Guess) -> Result<Opt
         return Ok(None);
     }
     let views = views_used(&crops, &sight.points, &left_out);
-    let screened = fitter.screen(&rest, &evidence, &starts)?;
+    let screened = match follow {
+        Follow::All => fitter.screen(&rest, &evidence, &starts)?,
+        Follow::Few => fitter.screen_few(&rest, &evidence, &starts)?,
+    };
     let Some(first) = screened.first() else { return Ok(None) };
     let misfit = misfit_of(fitter, &rest, &evidence, &first.pose, views)?;
     Ok(Some(Screening { rest, screened, crops, evidence, views, misfit }))

@@ -13,7 +13,7 @@ use super::search;
 use super::starts;
 use super::take::{Known, TakeFit};
 use super::take_frame::TakeFrame;
-use super::views;
+use super::views::{self, Contradictions};
 use crate::error::{Error, Result};
 
 /// So many places at most, and how far they are from each other at least, turns in radians and ways over half the hand's
@@ -38,15 +38,16 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
     let fitting = &fitter(&fine, weights.relative());
     let sight = &Sight::of(cameras, frame)?;
     let rest = take.volume.volume.rest_frame();
-    let mut found = near(searching, fitting, sight, &[rest])?.ok_or(Error::NoHand)?;
-    if !views::is_right(fitting, &found)? {
-        if let Some(other) = near(searching, fitting, sight, &places(take))? {
+    let (mut found, contradictions) =
+        near(searching, fitting, sight, &[rest])?.ok_or(Error::NoHand)?;
+    if !contradictions.are_none(fitting, &found) {
+        if let Some((other, _)) = near(searching, fitting, sight, &places(take))? {
             found = better(found, other);
         }
         let shown = repertoire::of_poses(right(take).map(|frame| frame.pose));
         let postures = Postures::Each(&shown);
         if let Some(other) = fitting.again(&found, &found.left_out, &[], postures)? {
-            found = better(found, views::without_disagreeing(fitting, &other)?);
+            found = better(found, views::without_disagreeing(fitting, &other)?.0);
         }
     }
     let fitter = &fitter(&coarse, weights.clone());
@@ -73,9 +74,14 @@ fn near(
     fitting: &FrameFitter<'_>,
     sight: &Sight,
     places: &[DAffine3],
-) -> Result<Option<Found>> {
-    let Some(found) = search::near(searching, sight, places)? else { return Ok(None) };
-    let found = fitting.improved(found)?;
+) -> Result<Option<(Found, Contradictions)>> {
+    let Some(found) = search::near_together(searching, sight, places)? else { return Ok(None) };
+    // One that agrees needs no other postures.
+    let found = if Contradictions::of(fitting, &found)?.are_usual(&found) {
+        fitting.again(&found, &found.left_out, &[], Postures::Given)?.unwrap_or(found)
+    } else {
+        fitting.improved(found)?
+    };
     views::without_disagreeing(fitting, &found).map(Some)
 }
 

@@ -26,19 +26,48 @@ pub(super) fn agreements(
     Ok(found.crops.iter().map(of_view).collect::<phalanx_refine::Result<_>>()?)
 }
 
+/// How far each view of a frame is from agreeing with its fit, over how far it may be: beyond 1 it contradicts it.
+pub(super) struct Contradictions(Vec<Option<f64>>);
+
+impl Contradictions {
+    pub(super) fn of(fitter: &FrameFitter<'_>, found: &Found) -> Result<Self> {
+        let over = |(far, limit): (Option<f64>, &f64)| far.map(|far| far / limit);
+        let misfits = misfits(fitter, found)?.into_iter();
+        Ok(Self(misfits.zip(&fitter.weights.limits).map(over).collect()))
+    }
+
+    /// The views of the frame that are used and show any of the hand, and how far they are.
+    fn used(&self, found: &Found) -> impl Iterator<Item = (usize, f64)> {
+        let used = self.0.iter().zip(&found.left_out).enumerate();
+        used.filter_map(|(view, (far, left_out))| Some((view, (*far).filter(|_| !left_out)?)))
+    }
+
+    /// Whether every view that is used agrees as well as in most of the take's frames.
+    pub(super) fn are_usual(&self, found: &Found) -> bool {
+        self.used(found).all(|(_, far)| far <= USUAL)
+    }
+
+    /// Whether every view that is used agrees, and shows the arm where the fit has it.
+    pub(super) fn are_none(&self, fitter: &FrameFitter<'_>, found: &Found) -> bool {
+        let leaves = |view: usize| view < found.crops.len() && fitter.leaves_picture(found, view);
+        self.used(found).all(|(view, far)| far <= 1.0 && !leaves(view))
+    }
+}
+
 /// A frame without the views that disagree. Where a view contradicts the pose, each view is left out in
 /// turn: one is left out for good if all others then agree, contradict half as much as before, or are no further off
 /// than views of any take may be, and it does not agree. Of two views that disagree neither is known to be right.
-pub(super) fn without_disagreeing(fitter: &FrameFitter<'_>, found: &Found) -> Result<Found> {
+pub(super) fn without_disagreeing(
+    fitter: &FrameFitter<'_>,
+    found: &Found,
+) -> Result<(Found, Contradictions)> {
     let mut best = found.clone();
     loop {
-        let contradictions = contradictions(fitter, &best)?;
-        let used: Vec<usize> = (0..contradictions.len())
-            .filter(|&view| contradictions[view].is_some() && !best.left_out[view])
-            .collect();
-        let worst = used.iter().filter_map(|&view| contradictions[view]).fold(0.0, f64::max);
+        let contradictions = Contradictions::of(fitter, &best)?;
+        let used: Vec<usize> = contradictions.used(&best).map(|(view, _)| view).collect();
+        let worst = contradictions.used(&best).map(|(_, far)| far).fold(0.0, f64::max);
         if used.len() < 3 || worst <= 1.0 {
-            return Ok(best);
+            return Ok((best, contradictions));
         }
         let mut likeliest: Option<(f64, Found)> = None;
         for &view in &used {
@@ -47,12 +76,12 @@ pub(super) fn without_disagreeing(fitter: &FrameFitter<'_>, found: &Found) -> Re
                 likeliest = Some((rest, without));
             }
         }
-        let Some((rest, without)) = likeliest else { return Ok(best) };
+        let Some((rest, without)) = likeliest else { return Ok((best, contradictions)) };
         let helps = rest <= 1.0
             || rest < 0.5 * worst
             || is_beyond_any(fitter, &best)? && !is_beyond_any(fitter, &without)?;
         if !helps {
-            return Ok(best);
+            return Ok((best, contradictions));
         }
         best = without;
     }
@@ -67,24 +96,16 @@ pub(super) fn is_beyond_any(fitter: &FrameFitter<'_>, found: &Found) -> Result<b
 
 /// Whether every view of a frame that is used agrees with its fit, and shows the arm where that has it.
 pub(super) fn is_right(fitter: &FrameFitter<'_>, found: &Found) -> Result<bool> {
-    let contradictions = contradictions(fitter, found)?;
-    let is_right = |view: usize| {
-        found.left_out[view]
-            || contradictions[view].is_none_or(|far| far <= 1.0)
-                && !(view < found.crops.len() && fitter.leaves_picture(found, view))
-    };
-    Ok((0..contradictions.len()).all(is_right))
-}
-
-/// How far each view of a frame is from agreeing with its fit, over how far it may be: beyond 1 it contradicts it.
-fn contradictions(fitter: &FrameFitter<'_>, found: &Found) -> Result<Vec<Option<f64>>> {
-    let over = |(far, limit): (Option<f64>, &f64)| far.map(|far| far / limit);
-    Ok(misfits(fitter, found)?.into_iter().zip(&fitter.weights.limits).map(over).collect())
+    Ok(Contradictions::of(fitter, found)?.are_none(fitter, found))
 }
 
 /// A view that is further from agreeing than this many times what is usual in its take contradicts its frame: of right
 /// frames of a real take the worst in twenty were 1.6 times as far as the middle one.
 const UNUSUAL: f64 = 2.0;
+
+/// One agrees as well as in most frames that is no further from agreeing than this share of how far it may be: one and a
+/// half times what is usual.
+const USUAL: f64 = 1.5 / UNUSUAL;
 
 /// How far each view may be from agreeing, by how far it is in most of a take's frames.
 pub(super) fn limits(fitter: &FrameFitter<'_>, found: &[Option<Found>]) -> Result<Vec<f64>> {
@@ -128,8 +149,7 @@ fn without(fitter: &FrameFitter<'_>, found: &Found, view: usize) -> Result<Optio
     let mut left_out = found.left_out.clone();
     left_out[view] = true;
     let Some(fitted) = fitter.again(found, &left_out, &[], Postures::All)? else { return Ok(None) };
-    let contradictions = contradictions(fitter, &fitted)?;
-    let of_view = |view: usize| contradictions[view].unwrap_or(0.0);
-    let rest = (0..left_out.len()).filter(|&view| !left_out[view]).map(of_view).fold(0.0, f64::max);
-    Ok((of_view(view) > 1.0).then_some((rest, fitted)))
+    let contradictions = Contradictions::of(fitter, &fitted)?;
+    let rest = contradictions.used(&fitted).map(|(_, far)| far).fold(0.0, f64::max);
+    Ok(contradictions.0[view].is_some_and(|far| far > 1.0).then_some((rest, fitted)))
 }

@@ -351,7 +351,7 @@ impl Tracker {
         if misfit::agrees(&found.refined) {
             return Ok(found);
         }
-        views::without_disagreeing(&self.fitter(&self.searching), &found)
+        Ok(views::without_disagreeing(&self.fitter(&self.searching), &found)?.0)
     }
 
     /// The motion of a hand that was found without one.
