@@ -14,6 +14,11 @@ const CONTRADICTION: f64 = 2.0 * DISAGREEMENT;
 /// 5 %), of wrong ones by .74 at most (95 %), and real borders are worse than drawn ones.
 const LEAST_OVERLAP: f64 = 0.7;
 
+/// The least overlap of a view that no other bears out: a hand that is nearer than it is, of another size, is drawn all
+/// around the one that is seen, which leaves little of its border unexplained. Of right poses drawn again nearly all
+/// overlap by more.
+const LEAST_OVERLAP_ALONE: f64 = 0.88;
+
 /// How far a view is from agreeing where it begins to count less.
 pub(super) const BEGINS: f64 = DISAGREEMENT / CONTRADICTION;
 
@@ -21,6 +26,11 @@ pub(super) const BEGINS: f64 = DISAGREEMENT / CONTRADICTION;
 pub(super) fn of_view(agreement: &Agreement) -> f64 {
     let Agreement { iou, unexplained } = agreement;
     (unexplained / CONTRADICTION).max((1.0 - iou) / (1.0 - LEAST_OVERLAP))
+}
+
+/// Whether a view shows something else than a pose that so many cameras tell.
+pub(super) fn is_poor(agreement: &Agreement, cameras: usize) -> bool {
+    of_view(agreement) > 1.0 || cameras == 1 && agreement.iou < LEAST_OVERLAP_ALONE
 }
 
 /// How far `views` views together are from agreeing with a pose, by what each that shows any of the hand
@@ -54,4 +64,18 @@ pub(super) fn of_fit(fit: &PoseFit, views: usize) -> f64 {
 /// Whether no view contradicts a fit to it in any take.
 pub(super) fn agrees(fit: &PoseFit) -> bool {
     each(fit).all(|misfit| misfit <= 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_view_that_no_other_bears_out_must_overlap_more() {
+        let view = |iou: f64| Agreement { iou, unexplained: 0.05 };
+        let is_poor = |iou: f64, cameras: usize| is_poor(&view(iou), cameras);
+        assert!(is_poor(0.85, 1) && !is_poor(0.9, 1));
+        assert!(is_poor(0.65, 2) && !is_poor(0.85, 2));
+        assert!(super::is_poor(&Agreement { iou: 0.95, unexplained: 0.3 }, 1));
+    }
 }

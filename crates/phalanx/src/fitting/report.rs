@@ -126,7 +126,7 @@ impl Reporter<'_> {
             let Some(agreement) = agreements[view].filter(|_| !found.left_out[view]) else {
                 continue;
             };
-            if misfit::of_view(&agreement) > 1.0 {
+            if misfit::is_poor(&agreement, found.cameras_used()) {
                 let Agreement { iou: overlap, unexplained } = agreement;
                 doubts.push(FitDoubt::PoorFit { view, unexplained, overlap });
             }
