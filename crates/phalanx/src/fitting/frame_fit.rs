@@ -82,15 +82,35 @@ impl FrameFitter<'_> {
         left_out: &[bool],
         frame: &DAffine3,
     ) -> Seen {
-        let (crops_out, points_out) = left_out.split_at(crops.len());
-        let views = crops.iter().zip(crops_out).zip(&self.weights.borders);
-        let used = views.filter(|((_, left_out), _)| !**left_out);
-        let silhouettes = used.filter_map(|((crop, _), weight)| {
-            Some(self.evidence_of(crop.as_ref()?, frame)?.weighted(*weight))
+        let used = crops.iter().zip(left_out).map(|(crop, left_out)| match left_out {
+            true => None,
+            false => self.evidence_of(crop.as_ref()?, frame),
         });
+        self.used(used.collect(), points, left_out, frame)
+    }
+
+    /// The same of what the crops tell.
+    fn used(
+        &self,
+        silhouettes: Vec<Option<SilhouetteObservation>>,
+        points: &[Option<CameraPoints>],
+        left_out: &[bool],
+        frame: &DAffine3,
+    ) -> Seen {
+        let (crops_out, points_out) = left_out.split_at(silhouettes.len());
+        let views = silhouettes.into_iter().zip(crops_out).zip(&self.weights.borders);
+        let used = views.filter(|((_, left_out), _)| !**left_out);
+        let silhouettes = used.filter_map(|((seen, _), weight)| Some(seen?.weighted(*weight)));
         let cameras = (0..points.len()).filter(|&camera| !points_out[camera]);
         let landmarks = cameras.filter_map(|camera| self.points_of(points, camera, frame));
         Seen { silhouettes: silhouettes.collect(), landmarks: landmarks.collect() }
+    }
+
+    /// What each view of a frame shows of its hand, also of those that are left out; `None` of one without a border.
+    pub(super) fn silhouettes(&self, found: &Found) -> Vec<Option<SilhouetteObservation>> {
+        let frame = found.frame(self.hand);
+        let crops = found.crops.iter();
+        crops.map(|crop| self.evidence_of(crop.as_ref()?, &frame)).collect()
     }
 
     /// What the points of a camera tell.
@@ -130,12 +150,18 @@ impl FrameFitter<'_> {
         used.any(|view| self.leaves_picture(found, view))
     }
 
-    /// How well a pose is known by the views that it was fitted to, each of the hand's proportions being known
-    /// to a standard deviation; `None` where they leave it open.
-    pub(super) fn posterior(&self, found: &Found, hand_std: &[f64]) -> Result<Option<Posterior>> {
+    /// How well a pose is known by the views that it was fitted to, which show these
+    /// [`silhouettes`](Self::silhouettes), each of the hand's proportions being known to a standard deviation; `None` where
+    /// they leave it open.
+    pub(super) fn posterior(
+        &self,
+        found: &Found,
+        silhouettes: Vec<Option<SilhouetteObservation>>,
+        hand_std: &[f64],
+    ) -> Result<Option<Posterior>> {
         // About the hand's own frame, where no angle is near the edge of its range.
         let frame = found.frame(self.hand);
-        let evidence = &self.seen(&found.crops, &found.points, &found.left_out, &frame);
+        let evidence = &self.used(silhouettes, &found.points, &found.left_out, &frame);
         let own = found.pose_in(&frame, self.hand);
         let posterior =
             self.refinement.posterior(self.hand, &frame, evidence, &own, self.prior, hand_std);

@@ -115,11 +115,13 @@ impl Reporter<'_> {
         let pose = found.pose_in(&self.rest, hand);
         let joints = hand.pose(&pose, &self.rest).joints;
         let mut doubts = Vec::new();
-        let posterior = fitter.posterior(found, &self.hand.std)?.unwrap_or_else(|| {
-            doubts.push(FitDoubt::Open);
-            Posterior { std: [f64::INFINITY; Dof::COUNT], joints: [f64::INFINITY; JOINTS] }
-        });
-        let agreements = views::agreements(fitter, found)?;
+        let silhouettes = fitter.silhouettes(found);
+        let agreements = views::agreements(fitter, found, &silhouettes)?;
+        let posterior =
+            fitter.posterior(found, silhouettes, &self.hand.std)?.unwrap_or_else(|| {
+                doubts.push(FitDoubt::Open);
+                Posterior { std: [f64::INFINITY; Dof::COUNT], joints: [f64::INFINITY; JOINTS] }
+            });
         let views: Vec<ViewFit> =
             (0..agreements.len()).map(|view| self.view(found, view, agreements[view])).collect();
         for view in used(&views) {

@@ -1,6 +1,6 @@
 //! Views that disagree with the others.
 
-use phalanx_refine::Agreement;
+use phalanx_refine::{Agreement, SilhouetteObservation};
 use rayon::prelude::*;
 
 use super::found::Found;
@@ -8,22 +8,18 @@ use super::frame_fit::{FrameFitter, Postures};
 use super::misfit;
 use crate::error::Result;
 
-/// How well each view of a frame agrees with its fit, also those that are left out; `None` of a view
-/// that sees nothing of it.
+/// How well each view of a frame, which show these [`silhouettes`](FrameFitter::silhouettes), agrees with its fit.
 pub(super) fn agreements(
     fitter: &FrameFitter<'_>,
     found: &Found,
+    silhouettes: &[Option<SilhouetteObservation>],
 ) -> Result<Vec<Option<Agreement>>> {
-    let frame = found.frame(fitter.hand);
-    let of_view = |crop: &Option<_>| {
-        let evidence = crop.as_ref().and_then(|crop| fitter.evidence_of(crop, &frame));
-        let agreement = evidence.map(|evidence| {
-            let Found { rest, refined, .. } = found;
-            fitter.refinement.agreement(fitter.hand, rest, &evidence, &refined.pose)
-        });
-        agreement.transpose()
+    let Found { rest, refined, .. } = found;
+    let agreement = |seen: &Option<SilhouetteObservation>| {
+        let agreement = |seen| fitter.refinement.agreement(fitter.hand, rest, seen, &refined.pose);
+        seen.as_ref().map(agreement).transpose()
     };
-    Ok(found.crops.iter().map(of_view).collect::<phalanx_refine::Result<_>>()?)
+    Ok(silhouettes.iter().map(agreement).collect::<phalanx_refine::Result<_>>()?)
 }
 
 /// How far each view of a frame is from agreeing with its fit, over how far it may be: beyond 1 it contradicts it.
@@ -121,7 +117,7 @@ pub(super) fn limits(fitter: &FrameFitter<'_>, found: &[Option<Found>]) -> Resul
 
 /// How far each view of a frame is from agreeing with its fit: its masks', then its landmarks'.
 pub(super) fn misfits(fitter: &FrameFitter<'_>, found: &Found) -> Result<Vec<Option<f64>>> {
-    let masks = agreements(fitter, found)?;
+    let masks = agreements(fitter, found, &fitter.silhouettes(found))?;
     let masks = masks.iter().map(|found| Some(misfit::of_view(found.as_ref()?)));
     let points = points_unexplained(fitter, found)?;
     let points = points.iter().map(|unexplained| unexplained.map(misfit::of_points));

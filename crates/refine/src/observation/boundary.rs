@@ -27,10 +27,35 @@ pub(crate) fn boundary_edges(mask: &Mask, edges: &mut Vec<DVec2>) {
     }
 }
 
+/// The pixels of two masks that are known, and hand in one of them alone, in order.
+pub(crate) fn differing<'a>(
+    [one, other]: [&'a Mask; 2],
+    known: &'a Mask,
+) -> impl Iterator<Item = usize> + 'a {
+    let ((ones, one), (others, other)) = (one.as_chunks(), other.as_chunks());
+    let (knowns, known) = known.as_chunks();
+    let pieces = ones.iter().zip(others).zip(knowns).enumerate();
+    let levels = |piece: &[u8; PIECE]| u64::from_le_bytes(*piece);
+    let pieces = pieces.map(move |(k, ((one, other), known))| {
+        (k, (levels(one) ^ levels(other)) & levels(known) & HAND_LEVELS)
+    });
+    // Nearly all of a picture is alike.
+    let differing = pieces.filter(|(_, differing)| *differing != 0).flat_map(|(k, differing)| {
+        (0..PIECE)
+            .filter(move |at| differing >> (u8::BITS as usize * at) & 0x80 != 0)
+            .map(move |at| PIECE * k + at)
+    });
+    let last = one.iter().zip(other).zip(known).enumerate();
+    let last =
+        last.filter(|(_, ((one, other), known))| Mask::is_hand_level((*one ^ *other) & *known));
+    differing.chain(last.map(move |(at, _)| PIECE * ones.len() + at))
+}
+
+/// Pixels that are looked at together.
+const PIECE: usize = 8;
+
 /// Calls for every place at which one row of pixels is hand and the other is not.
 fn changes(one: &[u8], other: &[u8], mut at: impl FnMut(usize)) {
-    /// Pixels that are looked at together.
-    const PIECE: usize = 8;
     // Nearly all of a picture is alike.
     if one == other {
         return;

@@ -8,78 +8,80 @@ use crate::observation::boundary::beside;
 /// rare places the second nearest.
 pub(crate) fn nearest_edges(edges: &[DVec2], (width, height): (u32, u32)) -> Vec<u32> {
     let (w, h) = (width as usize, height as usize);
-    let doubled = |edge: &DVec2| [(2.0 * edge.x) as i32, (2.0 * edge.y) as i32];
-    let mut nearest = Nearest {
-        edges: edges.iter().map(doubled).collect(),
-        of_pixels: vec![NONE; w * h],
-        squared: vec![u32::MAX; w * h],
-        width: w,
-    };
+    let mut pixels = vec![Nearest { edge: NONE, squared: u32::MAX }; w * h];
+    let places: Vec<[i32; 2]> =
+        edges.iter().map(|edge| [(2.0 * edge.x) as i32, (2.0 * edge.y) as i32]).collect();
     for (index, edge) in edges.iter().enumerate() {
         for [x, y] in beside(*edge) {
-            nearest.offer(x as usize, y as usize, index as u32);
+            pixels[y as usize * w + x as usize].offer(index as u32, [x, y].map(middle), &places);
         }
     }
-    for y in 0..h {
-        for x in 0..w {
-            if y > 0 {
-                nearest.take_row(x, y, y - 1);
-            }
-            if x > 0 {
-                nearest.take(x, y, x - 1, y);
-            }
-        }
-        (0..w - 1).rev().for_each(|x| nearest.take(x, y, x + 1, y));
+    let mut above: &[Nearest] = &[];
+    for (y, row) in pixels.chunks_exact_mut(w).enumerate() {
+        hand_on(above, row, (0..w).map(|x| (x, y)), &places);
+        hand_on(&[], row, (0..w).rev().map(|x| (x, y)), &places);
+        above = row;
     }
-    for y in (0..h - 1).rev() {
-        for x in (0..w).rev() {
-            nearest.take_row(x, y, y + 1);
-            if x + 1 < w {
-                nearest.take(x, y, x + 1, y);
-            }
-        }
-        (1..w).for_each(|x| nearest.take(x, y, x - 1, y));
+    let mut rows = pixels.chunks_exact_mut(w).enumerate().rev();
+    let mut below: &[Nearest] = rows.next().map_or(&[], |(_, last)| last);
+    for (y, row) in rows {
+        hand_on(below, row, (0..w).rev().map(|x| (x, y)), &places);
+        hand_on(&[], row, (0..w).map(|x| (x, y)), &places);
+        below = row;
     }
-    nearest.of_pixels
+    pixels.into_iter().map(|nearest| nearest.edge).collect()
 }
 
 /// Of a pixel that no edge was offered to yet.
 const NONE: u32 = u32::MAX;
 
-/// The nearest edge of every pixel so far.
+/// The nearest edge of a pixel so far.
+#[derive(Clone, Copy)]
 struct Nearest {
-    /// In half pixels, which are integers for edges as for the middles of pixels.
-    edges: Vec<[i32; 2]>,
-    of_pixels: Vec<u32>,
+    edge: u32,
     /// How far it is from the pixel's middle, half pixels squared.
-    squared: Vec<u32>,
-    width: usize,
+    squared: u32,
 }
 
 impl Nearest {
-    /// An edge that may be nearer to a pixel.
-    fn offer(&mut self, x: usize, y: usize, edge: u32) {
-        let at = self.edges[edge as usize];
-        let pixel = y * self.width + x;
-        let [dx, dy] = [at[0] - (2 * x as i32 + 1), at[1] - (2 * y as i32 + 1)];
+    /// An edge that may be nearer to a pixel with its middle at a place, in half pixels, which are integers for edges as for
+    /// the middles of pixels.
+    fn offer(&mut self, edge: u32, [x, y]: [i32; 2], places: &[[i32; 2]]) {
+        if edge == self.edge || edge == NONE {
+            return;
+        }
+        let at = places[edge as usize];
+        let [dx, dy] = [at[0] - x, at[1] - y];
         let squared = (dx * dx + dy * dy) as u32;
-        if squared < self.squared[pixel] {
-            (self.of_pixels[pixel], self.squared[pixel]) = (edge, squared);
+        if squared < self.squared {
+            *self = Self { edge, squared };
         }
     }
+}
 
-    /// That of another pixel.
-    fn take(&mut self, x: usize, y: usize, from_x: usize, from_y: usize) {
-        let edge = self.of_pixels[from_y * self.width + from_x];
-        if edge != self.of_pixels[y * self.width + x] && edge != NONE {
-            self.offer(x, y, edge);
-        }
-    }
+/// The middle of a pixel, half pixels.
+fn middle(at: u32) -> i32 {
+    2 * at as i32 + 1
+}
 
-    /// Those of the three nearest pixels of another row.
-    fn take_row(&mut self, x: usize, y: usize, from_y: usize) {
-        for from_x in x.saturating_sub(1)..self.width.min(x + 2) {
-            self.take(x, y, from_x, from_y);
+/// Offers each pixel of a row, in some order, those of the three nearest of another row, if there is one, and that of the
+/// pixel before it.
+fn hand_on(
+    other: &[Nearest],
+    row: &mut [Nearest],
+    order: impl Iterator<Item = (usize, usize)>,
+    places: &[[i32; 2]],
+) {
+    let mut before = NONE;
+    for (x, y) in order {
+        let mut own = row[x];
+        let at = [x, y].map(|at| middle(at as u32));
+        let near = x.saturating_sub(1)..(x + 2).min(other.len());
+        for nearest in other.get(near).unwrap_or(&[]) {
+            own.offer(nearest.edge, at, places);
         }
+        own.offer(before, at, places);
+        before = own.edge;
+        row[x] = own;
     }
 }

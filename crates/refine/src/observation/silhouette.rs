@@ -31,8 +31,6 @@ pub struct SilhouetteObservation {
     normals: Vec<DVec2>,
     /// The nearest edge of every pixel.
     nearest: Vec<u32>,
-    /// How far it is from the pixel's middle, px; 0 where nothing is known.
-    apart: Vec<f32>,
 }
 
 impl SilhouetteObservation {
@@ -76,7 +74,6 @@ impl SilhouetteObservation {
         Ok(Self {
             camera: camera.clone(),
             mask: mask.clone(),
-            apart: distances(&known, &edges, &nearest),
             known,
             grain: 1.0,
             weight: 1.0,
@@ -158,11 +155,11 @@ impl SilhouetteObservation {
     /// How far drawn pixels that were not seen, and seen ones that are not drawn, are from the boundary, px; of what is
     /// known.
     pub(crate) fn differences<'a>(&'a self, drawn: &'a Mask) -> impl Iterator<Item = f64> + 'a {
-        let pixels = drawn.iter().zip(self.mask.iter()).zip(&self.apart);
-        let differing = pixels.filter(|((drawn, seen), apart)| {
-            Mask::is_hand_level(**drawn) != Mask::is_hand_level(**seen) && **apart > 0.0
-        });
-        differing.map(|(_, apart)| f64::from(*apart))
+        let width = self.mask.width() as usize;
+        boundary::differing([drawn, &self.mask], &self.known).map(move |pixel| {
+            let middle = DVec2::new((pixel % width) as f64, (pixel / width) as f64) + 0.5;
+            f64::from(self.edges[self.nearest[pixel] as usize].distance(middle) as f32)
+        })
     }
 
     /// How far outside the silhouette a place in the image is, px; negative within.
@@ -195,17 +192,4 @@ impl SilhouetteObservation {
         }
         f64::from(both) / f64::from(either.max(1))
     }
-}
-
-/// How far each pixel's middle is from the edge that is nearest to it, px; 0 where nothing is known.
-fn distances(known: &Mask, edges: &[DVec2], nearest: &[u32]) -> Vec<f32> {
-    let width = known.width() as usize;
-    let distance = |(pixel, (&edge, &known)): (usize, (&u32, &u8))| {
-        if !Mask::is_hand_level(known) {
-            return 0.0;
-        }
-        let middle = DVec2::new((pixel % width) as f64, (pixel / width) as f64) + 0.5;
-        edges[edge as usize].distance(middle) as f32
-    };
-    nearest.iter().zip(known.iter()).enumerate().map(distance).collect()
 }

@@ -5,7 +5,7 @@ use image::GrayImage;
 use phalanx_segmentation::Mask;
 use proptest::prelude::*;
 
-use crate::observation::boundary::boundary_edges;
+use crate::observation::boundary::{boundary_edges, differing};
 use crate::observation::distance_transform::nearest_edges;
 
 /// Masks of few and of many changes.
@@ -38,6 +38,22 @@ proptest! {
         let mut edges = Vec::new();
         boundary_edges(&mask, &mut edges);
         prop_assert_eq!(edges, slow_edges(&mask));
+    }
+
+    #[test]
+    fn pixels_differ_where_one_is_hand_and_the_other_is_not(
+        masks in (1_u32..50, 1_u32..20).prop_flat_map(|(width, height)| {
+            let pixels = prop::collection::vec(any::<u8>(), (width * height) as usize);
+            let mask = move |pixels| Mask::from(GrayImage::from_raw(width, height, pixels).unwrap());
+            prop::array::uniform3(pixels.prop_map(mask))
+        }),
+    ) {
+        let [one, other, known] = &masks;
+        let pixels = one.enumerate_pixels().enumerate();
+        let is_differing = |x, y| one.is_hand(x, y) != other.is_hand(x, y) && known.is_hand(x, y);
+        let slow = pixels.filter(|(_, (x, y, _))| is_differing(*x, *y)).map(|(pixel, _)| pixel);
+        let fast: Vec<usize> = differing([one, other], known).collect();
+        prop_assert_eq!(fast, slow.collect::<Vec<_>>());
     }
 
     /// The sweeps may miss the nearest by a little.
