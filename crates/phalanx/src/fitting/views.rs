@@ -45,8 +45,8 @@ impl Contradictions {
 
     /// Whether every view that is used agrees, and shows the arm where the fit has it.
     pub(super) fn are_none(&self, fitter: &FrameFitter<'_>, found: &Found) -> bool {
-        let leaves = |view: usize| view < found.crops.len() && fitter.leaves_picture(found, view);
-        self.used(found).all(|(view, far)| far <= 1.0 && !leaves(view))
+        let leaves = |view: usize| !found.left_out[view] && fitter.leaves_picture(found, view);
+        self.used(found).all(|(_, far)| far <= 1.0) && !(0..found.crops.len()).any(leaves)
     }
 }
 
