@@ -83,13 +83,15 @@ impl Ascent {
     }
 
     /// Takes the best step until none gains. Convergence is checked with quantities computed from
-    /// scratch.
+    /// scratch; where targets without noise lead to where these are lost to rounding, the steps since
+    /// they were last computed are taken back, and the ascent ends.
     fn climb(
         &self,
         evidence: &mut MarginalLikelihood<'_>,
         left: &mut usize,
         mut observe: impl FnMut(Progress),
     ) -> Result<bool> {
+        let mut computed = evidence.clone();
         loop {
             let step = evidence.best_step();
             let gains = step.gain > self.tolerance;
@@ -97,7 +99,14 @@ impl Ascent {
                 return Ok(true);
             }
             if !gains || evidence.stale >= STEPS_BETWEEN + evidence.active.len() {
-                evidence.refresh()?;
+                match evidence.refresh() {
+                    Ok(()) => computed.clone_from(evidence),
+                    Err(Error::Singular { .. }) => {
+                        *evidence = computed;
+                        return Ok(false);
+                    }
+                    Err(error) => return Err(error),
+                }
                 continue;
             }
             if *left == 0 {
