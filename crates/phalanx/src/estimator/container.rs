@@ -23,15 +23,18 @@ pub(crate) struct Container {
 }
 
 impl Container {
-    /// The file's bytes.
+    /// The file's bytes. The payload is written behind the header, and not copied there: a part of a training may
+    /// have a gigabyte.
     pub(crate) fn encode(&self, payload: &impl Serialize) -> Result<Vec<u8>> {
-        let payload = postcard::to_stdvec(payload).map_err(|error| self.content(&error))?;
-        let mut bytes = Vec::with_capacity(HEADER + payload.len());
-        bytes.extend(self.mark);
-        bytes.extend(self.format.to_le_bytes());
-        bytes.extend((payload.len() as u64).to_le_bytes());
-        bytes.extend(crc32fast::hash(&payload).to_le_bytes());
-        bytes.extend(payload);
+        let header = vec![0; HEADER];
+        let mut bytes =
+            postcard::to_extend(payload, header).map_err(|error| self.content(&error))?;
+        let (header, payload) = bytes.split_at_mut(HEADER);
+        let (mark, numbers) = header.split_at_mut(self.mark.len());
+        mark.copy_from_slice(&self.mark);
+        numbers[..4].copy_from_slice(&self.format.to_le_bytes());
+        numbers[4..12].copy_from_slice(&(payload.len() as u64).to_le_bytes());
+        numbers[12..].copy_from_slice(&crc32fast::hash(payload).to_le_bytes());
         Ok(bytes)
     }
 
