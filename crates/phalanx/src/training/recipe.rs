@@ -105,14 +105,18 @@ impl Training {
     }
 
     /// Bytes that are held at most, roughly: the shape contexts of the scenes that codebooks are learnt
-    /// from, or what is kept of the samples.
+    /// from, the pilot's codes, or what is kept of the samples, twice: beside it stands its copy, the file of the
+    /// unfinished part or later the network's samples in one piece.
     pub(crate) fn bytes(&self, views: usize, codebook: usize, pilot: usize, own: usize) -> usize {
         /// Of one view of a scene: a contour of some 300 points.
         const CONTEXTS: usize = 300 * phalanx_shape_context::BINS * size_of::<f32>();
+        /// Of what else there is: the program, codebooks, and what was freed and is not given back. Measured.
+        const OTHERS: usize = 200 << 20;
         let contexts = codebook.saturating_mul(views).saturating_mul(CONTEXTS);
         let code = views.saturating_mul(self.vocabulary.centres * phalanx_shape_context::BINS);
-        let piloted = pilot.saturating_mul(code).saturating_mul(2 * size_of::<f64>());
-        contexts.max(piloted).saturating_add(own.saturating_mul(self.regressor.bytes(views)))
+        let piloted = pilot.saturating_mul(code).saturating_mul(size_of::<f64>());
+        let kept = own.saturating_mul(self.regressor.bytes(views)).saturating_mul(2);
+        contexts.max(piloted).max(kept).saturating_add(OTHERS)
     }
 
     /// How pictures are looked at.

@@ -124,7 +124,7 @@ impl RegressorConfig {
         let Self::Network(fitter) = self else { return 0 };
         // Of every view's code, and of what is beside it.
         let read = views.saturating_mul(2 * fitter.components);
-        read.saturating_mul(size_of::<f32>()) + 2 * Dof::COUNT * size_of::<f64>()
+        read.saturating_mul(size_of::<f32>()) + Dof::COUNT * size_of::<f64>()
     }
 
     /// Learns what to read of a descriptor from a pilot's descriptors, K × n, and poses, 28 × n.

@@ -221,3 +221,24 @@ impl Trainer {
         Ok(part)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Peaks of the program and of `cargo xtask presets`, MiB, through three views.
+    #[test]
+    fn the_memory_that_is_said_is_about_what_was_measured() {
+        let part = Shard::new(1, 100).unwrap();
+        for (preset, shard, measured) in [
+            (Preset::Fast, Shard::WHOLE, 384.0),
+            (Preset::Default, Shard::WHOLE, 879.0),
+            (Preset::Best, Shard::WHOLE, 1657.0),
+            (Preset::Default, part, 368.0),
+        ] {
+            let bytes = Trainer::preset(preset).cost(3, shard).bytes;
+            let ratio = bytes as f64 / f64::from(1 << 20) / measured;
+            assert!((0.9..1.3).contains(&ratio), "{preset:?}, {shard:?}: {ratio:.2} of it");
+        }
+    }
+}
