@@ -76,7 +76,23 @@ fn sensible(files: &[PathBuf], missing: &Missing) -> Option<RangeInclusive<f64>>
 }
 
 /// Two digits.
-fn rounded(mm: f64) -> f64 {
-    let digit = 10_f64.powf(mm.log10().floor() - 1.0);
-    (mm / digit).round() * digit
+fn rounded(mm: f64) -> String {
+    let power = mm.log10().floor() as i32 - 1;
+    let digit = 10_f64.powi(power);
+    // The product alone has digits that nobody asked for, as in 4.1000000000000005.
+    format!("{:.*}", usize::try_from(-power).unwrap_or(0), (mm / digit).round() * digit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded;
+
+    #[test]
+    fn lengths_are_said_with_two_digits() {
+        for (mm, said) in
+            [(0.3312, "0.33"), (4.0967, "4.1"), (0.0996, "0.10"), (33.4, "33"), (4096.7, "4100")]
+        {
+            assert_eq!(rounded(mm), said);
+        }
+    }
 }
