@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Error, Result};
 use clap::Args;
 use phalanx_camera::Rig;
 use phalanx_cli::files::Output;
@@ -57,10 +57,24 @@ fn size(text: &str) -> Result<(u32, u32)> {
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { files, unit, square_mm, size, .. } = arguments;
     let missing = Missing { unit: unit.or(*square_mm), size: *size };
-    import(arguments, &missing).map_err(|error| match unit::advice(&error, files, &missing) {
-        Some(advice) => error.context(advice),
-        None => error,
+    import(arguments, &missing).map_err(|error| {
+        let advice =
+            unit::advice(&error, files, &missing).or_else(|| size_advice(&error, &missing));
+        match advice {
+            Some(advice) => error.context(advice),
+            None => error,
+        }
     })
+}
+
+/// What to say of a calibration without its pictures' size: OpenCV's and EasyMocap's seldom have it.
+fn size_advice(error: &Error, missing: &Missing) -> Option<String> {
+    let is_of_size = matches!(
+        error.downcast_ref(),
+        Some(phalanx_io::Error::CalibrationField { field, .. }) if field == "size"
+    );
+    (is_of_size && missing.size.is_none())
+        .then(|| "give the pictures' size, such as --size 1280x720".to_owned())
 }
 
 fn import(arguments: &Arguments, missing: &Missing) -> Result<()> {

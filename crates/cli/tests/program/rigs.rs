@@ -159,6 +159,7 @@ fn what_cannot_be_is_refused_and_nothing_is_written() {
     let write = |name: &str, text: &str| std::fs::write(folder.0.path().join(name), text).unwrap();
     write("omni.toml", &CALISCOPE.replacen("fisheye = true", "model = \"omni\"", 1));
     write("half.toml", &CALISCOPE.replace("rotation = [0.0, 1.0, 0.0]\n", ""));
+    write("unsized.toml", &CALISCOPE.replacen("size = [1280, 720]\n", "", 1));
     let volume = "--center 0,0,0 --forearm 0,1,0 --up 0,0,-1";
     for (arguments, part) in [
         ("camera_array.toml", "(Caliscope writes metres): give the unit"),
@@ -169,6 +170,10 @@ fn what_cannot_be_is_refused_and_nothing_is_written() {
         ("camera_array.toml --unit m --size 640x480", "size is 1280×720 px in the file"),
         ("omni.toml --unit m", "omni.toml: camera `cam_0`: model `omni`"),
         ("half.toml --unit m", "half.toml: camera `cam_1`: rotation is missing"),
+        (
+            "unsized.toml --unit m",
+            "give the pictures' size, such as --size 1280x720: unsized.toml:",
+        ),
         ("none.toml --unit m", "none.toml: No such file"),
         ("", "required arguments"),
     ] {
