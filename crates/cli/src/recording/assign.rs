@@ -20,7 +20,18 @@ pub(crate) fn assign(
         && cameras.len() > 1
         && named(cameras, folder).is_none()
     {
+        if let Some((name, path)) = folder.split_once('=').filter(|_| !Path::new(folder).exists()) {
+            bail!("{name}={path}: the rig has no camera '{name}'; its cameras are {}", names());
+        }
         ensure!(Path::new(folder).exists(), "{folder}: there is no such file or folder");
+        ensure!(
+            Path::new(folder).is_dir(),
+            "{folder}: this is one camera's; give the {things} of all {} cameras in the order {}, or say whose it \
+             is: {}=PATH",
+            cameras.len(),
+            names(),
+            cameras[0].name
+        );
         let found = folders_of(cameras, Path::new(folder));
         return found.with_context(|| {
             format!(
@@ -107,6 +118,14 @@ mod tests {
         }
         let refusal = |path: &str| assigned(&[path]).unwrap_err().to_string();
         assert_eq!(refusal("nowhere"), "nowhere: there is no such file or folder");
+        let said = refusal("nobody=a.mp4");
+        assert!(
+            said.starts_with("nobody=a.mp4: the rig has no camera 'nobody'; its cameras are "),
+            "{said}"
+        );
+        let video = tempfile::NamedTempFile::new().unwrap();
+        let said = refusal(&video.path().display().to_string());
+        assert!(said.contains("give the recordings of all 3 cameras in the order"), "{said}");
         let empty = tempfile::tempdir().unwrap();
         let said = refusal(&empty.path().display().to_string());
         assert!(said.contains("it is to hold the recordings of all cameras"), "{said}");
