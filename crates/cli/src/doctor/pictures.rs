@@ -28,7 +28,8 @@ fn seen(rig: &Rig, recording: &RecordingArguments) -> Result<Vec<Finding>> {
     )];
     for (camera, &missing) in source.cameras.iter().zip(&reader.timeline.missing) {
         if missing > 0 {
-            let text = format!("no picture at {missing} moments");
+            let moments = if missing == 1 { "moment" } else { "moments" };
+            let text = format!("no picture at {missing} {moments}");
             findings.push(Finding::doubtful(named(camera), text));
         }
     }
@@ -41,7 +42,8 @@ fn seen(rig: &Rig, recording: &RecordingArguments) -> Result<Vec<Finding>> {
     if failures.is_empty() && cameras > 1 {
         let fit = fit_take(&source.cameras, &frames, &TakeSettings::default(), &NoProgress)?;
         let views = source.cameras.iter().enumerate();
-        findings.extend(views.map(|(view, camera)| agreement(camera, view, &fit)));
+        findings
+            .extend(views.map(|(view, camera)| agreement(camera, view, &fit, source.are_masks())));
     }
     Ok(findings)
 }

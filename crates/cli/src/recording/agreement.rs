@@ -12,7 +12,12 @@ pub(crate) fn named(camera: &Camera) -> String {
 
 /// Whether what a camera shows meets what the others show in space. One that contradicts them at most moments
 /// does not stand where the calibration has it, or its frames are of other moments.
-pub(crate) fn agreement(camera: &Camera, view: usize, fit: &TakeFit) -> Finding {
+pub(crate) fn agreement(camera: &Camera, view: usize, fit: &TakeFit, are_masks: bool) -> Finding {
+    let look = if are_masks {
+        "look at the masks: the hand and its arm are white, all else is black"
+    } else {
+        "look at the light, or give masks"
+    };
     let views = || fit.frames.iter().map(|frame| frame.views[view]);
     let moments = fit.frames.len();
     let count = |reason| views().filter(|view| view.missing == Some(reason)).count();
@@ -21,14 +26,14 @@ pub(crate) fn agreement(camera: &Camera, view: usize, fit: &TakeFit) -> Finding 
     if 2 * contradicts > moments {
         let text = format!(
             "it contradicts the other cameras at {contradicts} of {moments} moments: it was moved after the \
-             calibration, the calibration is wrong, or its frames are of other moments"
+             calibration, the calibration is wrong, its frames are of other moments, or recordings are \
+             exchanged, its own or two others'"
         );
         return Finding::broken(what, text);
     }
     if 2 * absent > moments {
-        let text = format!(
-            "no hand where the others see it, at {absent} of {moments} moments: look at the light, or give masks"
-        );
+        let text =
+            format!("no hand where the others see it, at {absent} of {moments} moments: {look}");
         return Finding::broken(what, text);
     }
     let overlaps: Vec<f64> = views().filter_map(|view| view.overlap).collect();
@@ -39,8 +44,7 @@ pub(crate) fn agreement(camera: &Camera, view: usize, fit: &TakeFit) -> Finding 
     let doubted = doubts.count();
     if 2 * doubted > moments {
         let text = format!(
-            "{text}, which is not as of a hand, or of one that is cut off, at {doubted} of {moments} moments: look at \
-             the light, or give masks"
+            "{text}, which is not as of a hand, or of one that is cut off, at {doubted} of {moments} moments: {look}"
         );
         return Finding::doubtful(what, text);
     }

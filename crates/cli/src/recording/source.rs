@@ -92,6 +92,11 @@ impl Source {
         both.filter_map(|(camera, path)| Some((camera, path.as_ref()?)))
     }
 
+    /// Whether the pictures are masks.
+    pub(crate) fn are_masks(&self) -> bool {
+        matches!(self.pictures, Pictures::Masks)
+    }
+
     /// The files and folders of landmarks.
     pub(crate) fn landmark_paths(&self) -> &[PathBuf] {
         &self.landmark_paths

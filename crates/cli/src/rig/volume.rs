@@ -100,7 +100,8 @@ pub(super) fn seen(source: &Source, side: Side) -> Result<VolumeEstimate> {
     let fit = fit_take(&source.cameras, &frames, &settings, &Bar::new())?;
     if source.cameras.len() > 1 {
         let views = source.cameras.iter().enumerate();
-        let findings = views.map(|(view, camera)| agreement(camera, view, &fit));
+        let findings =
+            views.map(|(view, camera)| agreement(camera, view, &fit, source.are_masks()));
         for Finding { what, text, .. } in findings.filter(|finding| finding.state != State::Good) {
             eprintln!("doubt: {what}: {text}");
         }

@@ -122,6 +122,8 @@ fn a_view_that_would_be_doubted_is_doubted() {
     assert_eq!(code, Some(0), "{report:#}");
     let doubts = in_state(&report, "doubt").join("\n");
     assert!(doubts.contains("camera 'top'") && doubts.contains("cut off, at "), "{report:#}");
+    // They were given as masks already.
+    assert!(doubts.contains("look at the masks") && !doubts.contains("give masks"), "{report:#}");
 }
 
 /// A camera of three that stands elsewhere than the calibration says is told from the two others.
