@@ -85,7 +85,7 @@ enum PresetName {
     /// 120,000 scenes: some minutes.
     #[default]
     Default,
-    /// 240,000 scenes.
+    /// 240,000 scenes: some ten minutes.
     Best,
 }
 
