@@ -14,6 +14,7 @@ mod form;
 mod import_calibration;
 mod input;
 mod manual;
+mod mask;
 mod no_hand;
 mod output;
 mod postures;

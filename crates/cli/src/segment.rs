@@ -5,16 +5,18 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use image::{DynamicImage, Rgb, RgbImage};
-use phalanx::{Picture, Segment, Segmentation, Segmenter, mask_from, photograph_from};
+use phalanx::{Picture, Segment, Segmentation, Segmenter, photograph_from};
 use phalanx_cli::reading;
 use phalanx_segmentation::{Mask, PlainBackground, SkinModel};
+
+use crate::mask::given_mask;
 
 /// The greatest difference between the channels of a pixel without colour, levels: what a JPEG file's
 /// rounding makes of a grey one.
 pub(crate) const GREY: u8 = 8;
 
 /// How far the black and white of masks are off after a lossy encoding, levels.
-const OFF_BLACK_AND_WHITE: u8 = 24;
+pub(crate) const OFF_BLACK_AND_WHITE: u8 = 24;
 
 #[derive(Args, Clone, Default)]
 pub(crate) struct SegmentArguments {
@@ -77,28 +79,31 @@ impl SegmentArguments {
 
 impl Pictures {
     /// The mask of a camera's picture.
+    ///
+    /// # Errors
+    /// A photograph that is given as a mask, or the reverse.
     pub(crate) fn mask(&self, camera: &str, picture: &DynamicImage) -> Result<Mask> {
-        Ok(match self {
-            Self::Masks => mask_from(picture),
+        match self {
+            Self::Masks => given_mask(picture).context("photographs go without --mask"),
             Self::Photographs(segmentation) => {
                 let segmenter = segmentation.of_camera(camera)?;
-                segmenter.segment(&photograph(picture, segmenter)?)?
+                Ok(segmenter.segment(&photograph(picture, segmenter)?)?)
             }
-        })
+        }
     }
 
     /// A camera's picture for the estimator. A recorded background has the size of the picture, at which
     /// the hand is therefore found here.
     pub(crate) fn prepared(&self, camera: &str, picture: &DynamicImage) -> Result<Prepared<'_>> {
+        let named = || format!("camera '{camera}'");
         if let Self::Photographs(segmentation) = self {
             let segmenter = segmentation.of_camera(camera)?;
             if !matches!(segmenter, Segmenter::Background(_)) {
-                let named = || format!("camera '{camera}'");
                 let photograph = photograph(picture, segmenter).with_context(named)?;
                 return Ok(Prepared::Photograph(photograph, segmenter));
             }
         }
-        self.mask(camera, picture).map(Prepared::Mask)
+        self.mask(camera, picture).with_context(named).map(Prepared::Mask)
     }
 }
 

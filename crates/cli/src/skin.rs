@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use image::RgbImage;
-use phalanx::{Segmentation, Segmenter, mask_from, photograph_from};
+use phalanx::{Segmentation, Segmenter, photograph_from};
 use phalanx_cli::files::Output;
 use phalanx_sampling::spread_subset;
 use phalanx_segmentation::{BackgroundModel, BackgroundParams, Mask, SkinModel, SkinTrainer};
@@ -14,6 +14,7 @@ use serde_json::json;
 
 use crate::form::Form;
 use crate::input;
+use crate::mask::given_mask;
 use crate::recording::Recording;
 use crate::recording::pictures::PictureFolder;
 
@@ -64,7 +65,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             let at = folder.stamps().iter().position(|stamp| stamp.name == name);
             let at =
                 at.with_context(|| format!("camera '{camera}': picture {name} has no mask"))?;
-            Ok(mask_from(&input::picture(&folder.path(at), None)?))
+            let path = folder.path(at);
+            given_mask(&input::picture(&path, None)?).with_context(|| path.display().to_string())
         })?,
         _ => bail!(
             "give --empty for a model of the background, or --hand with --empty or --masks for one of skin"

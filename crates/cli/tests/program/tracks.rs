@@ -116,6 +116,28 @@ fn masks_without_their_option_are_told() {
     refuses();
 }
 
+/// Photographs are no masks: parts of them that are bright are fitted as a hand, which nothing tells.
+#[test]
+fn photographs_given_as_masks_are_told() {
+    let desk = recorded(2);
+    for (camera, frame) in CAMERAS.iter().flat_map(|camera| [(camera, 0), (camera, 1)]) {
+        let photograph = desk.open(&format!("{camera}.png")).to_rgb8();
+        std::fs::remove_file(desk.path(&format!("take/{camera}/{frame:04}.png"))).unwrap();
+        photograph.save(desk.path(&format!("take/{camera}/{frame:04}.jpg"))).unwrap();
+    }
+    let told = "photographs go without --mask: it is like a photograph, not like a mask: ";
+    let tracked = track(&desk, &["take", "--out", "t.csv"]);
+    assert!(tracked.err.contains("none of the 4 pictures can be used"), "{tracked:?}");
+    let estimated = desk.estimate(&["--mask", "side.png", "top.png"]);
+    for outcome in [tracked, estimated] {
+        assert_eq!(outcome.code, Some(2), "{outcome:?}");
+        assert!(outcome.err.contains(told), "{outcome:?}");
+    }
+    let looked = run(desk.folder(), ["doctor", "--rig", "rig.toml", "take", "--mask"]);
+    assert_eq!(looked.code, Some(2), "{looked:?}");
+    assert!(looked.out.contains(told), "{looked:?}");
+}
+
 #[test]
 fn videos_give_the_angles_of_their_pictures() {
     if Command::new("ffmpeg").arg("-version").output().is_err() {
