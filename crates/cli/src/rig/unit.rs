@@ -77,10 +77,11 @@ fn sensible(files: &[PathBuf], missing: &Missing) -> Option<RangeInclusive<f64>>
 
 /// Two digits.
 fn rounded(mm: f64) -> String {
-    let power = mm.log10().floor() as i32 - 1;
-    let digit = 10_f64.powi(power);
-    // The product alone has digits that nobody asked for, as in 4.1000000000000005.
-    format!("{:.*}", usize::try_from(-power).unwrap_or(0), (mm / digit).round() * digit)
+    // As a power of ten it is rounded first: 0.0996 becomes 0.10, not 0.100.
+    let scientific = format!("{mm:.1e}");
+    let power = scientific.split_once('e').and_then(|(_, power)| power.parse::<i32>().ok());
+    let decimals = usize::try_from(1 - power.unwrap_or(0)).unwrap_or(0);
+    scientific.parse().map_or(scientific, |rounded: f64| format!("{rounded:.decimals$}"))
 }
 
 #[cfg(test)]
