@@ -29,7 +29,7 @@ pub struct Table {
 pub struct Row {
     /// The angle's or total's name.
     pub name: String,
-    /// For each group the smallest, the largest and the range; a total has a range alone.
+    /// For each group the smallest, the largest and the range; a total has a range alone, one frame has none.
     pub cells: Vec<[Option<Measured>; 3]>,
 }
 
@@ -53,18 +53,24 @@ pub fn range_table(first: NamedRange<'_>, second: Option<NamedRange<'_>>) -> Tab
     };
     let angles = first.range.angles.iter().enumerate().map(|(k, _)| {
         row(Dof::ALL[k].name().to_owned(), &|range| {
-            let AngleRange { smallest, largest, range } = range.angles[k];
-            [smallest, largest, range].map(Some)
+            let AngleRange { smallest, largest, range: between } = range.angles[k];
+            [Some(smallest), Some(largest), of_several(range, between)]
         })
     });
     let totals = Digit::ALL.into_iter().enumerate().map(|(k, digit)| {
         let name = format!("{} total", digit_name(digit));
-        row(name, &|range| [None, None, Some(range.totals[k])])
+        row(name, &|range| [None, None, of_several(range, range.totals[k])])
     });
     let notes = takes.iter().map(|NamedRange { name, range }| {
-        format!("{name}: {} of {} frames count", range.counted, range.frames)
+        let counts = if range.counted == 1 { "counts, which has no range" } else { "count" };
+        format!("{name}: {} of {} frames {counts}", range.counted, range.frames)
     });
     Table { groups, notes: notes.collect(), rows: angles.chain(totals).collect() }
+}
+
+/// What lies between frames: of one frame alone it would be 0 with a deviation.
+fn of_several(range: &RangeOfMotion, between: Measured) -> Option<Measured> {
+    (range.counted > 1).then_some(between)
 }
 
 fn digit_name(digit: Digit) -> &'static str {

@@ -53,6 +53,20 @@ fn the_range_is_that_of_the_trusted_frames_with_deviations() {
 }
 
 #[test]
+fn one_frame_has_no_range() {
+    let mut take = four_angles();
+    take.frames.truncate(1);
+    let range = RangeOfMotion::of(&take, FrameChoice::Trusted).unwrap();
+    let table = range_table(NamedRange { name: "still", range: &range }, None);
+    let [angle, total] = ["index.pip", "index total"]
+        .map(|name| table.rows.iter().find(|row| row.name == name).unwrap().cells[0]);
+    assert!(angle[0].is_some() && angle[1].is_some() && angle[2].is_none(), "{angle:?}");
+    assert!(total[2].is_none(), "{total:?}");
+    assert_eq!(table.notes, ["still: 1 of 1 frames counts, which has no range"]);
+    assert!(!to_text(&table).contains("0.0 ±"));
+}
+
+#[test]
 fn two_takes_stand_side_by_side_in_every_form() {
     let mut after = four_angles();
     after.frames[2].estimate.as_mut().unwrap().pose[Dof::IndexPip] = 95_f64.to_radians();
