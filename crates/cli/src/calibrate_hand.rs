@@ -12,6 +12,7 @@ use phalanx_refine::{
 use phalanx_sampling::random_subset;
 use serde_json::json;
 
+use crate::counts::counted;
 use crate::form::Form;
 use crate::input;
 use crate::output::Doubt;
@@ -65,13 +66,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         }
     }
     let used = frames.len();
-    ensure!(used >= LEAST_FRAMES, "{used} frames can be used; at least {LEAST_FRAMES} are needed");
+    ensure!(
+        used >= LEAST_FRAMES,
+        "{} can be used; at least {LEAST_FRAMES} are needed",
+        counted(used, "frame")
+    );
     let observations = frames.iter().map(|frame| &frame.estimate.observation);
     let postures = postures::count(observations, refiner.refinement().noise);
     ensure!(
         postures >= LEAST_FRAMES,
-        "the {used} frames show {postures} different postures; at least {LEAST_FRAMES} are needed, for \
-         one tells little of a hand's proportions"
+        "the {used} frames show {}; at least {LEAST_FRAMES} are needed, for one tells little of a hand's proportions",
+        counted(postures, "different posture")
     );
     frames.iter().for_each(Frame::say_doubts);
     check_causes(&frames)?;

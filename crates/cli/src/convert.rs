@@ -12,6 +12,7 @@ use phalanx_io::export::{
 use phalanx_io::take::Take;
 use serde_json::json;
 
+use crate::counts::{counted, either};
 use crate::form::Form;
 use crate::take_file;
 
@@ -58,7 +59,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     } else {
         String::new()
     };
-    eprintln!("phalanx: {} frames; {}{deviations}", take.frames.len(), out.display());
+    let frames = counted(take.frames.len(), "frame");
+    eprintln!("phalanx: {frames}; {}{deviations}", out.display());
     let told = untold(&take, arguments, &kind);
     for text in &told {
         eprintln!("phalanx: {text}");
@@ -99,7 +101,11 @@ fn untold(take: &Take, arguments: &Arguments, kind: &str) -> Vec<String> {
     let mut told = Vec::new();
     let lost = take.frames.iter().filter(|frame| frame.estimate.is_none()).count();
     if lost > 0 && kind == "bvh" {
-        told.push(format!("{lost} frames without a hand repeat the pose before"));
+        told.push(format!(
+            "{} without a hand {} the pose before",
+            counted(lost, "frame"),
+            either(lost, "repeats", "repeat")
+        ));
     }
     let jitter = largest_jitter(take);
     if matches!(kind, "bvh" | "c3d") && jitter > 0.5 / frame_rate(take) {
@@ -112,7 +118,8 @@ fn untold(take: &Take, arguments: &Arguments, kind: &str) -> Vec<String> {
         arguments.names.coordinates().iter().filter(|coordinate| !coordinate.is_confirmed).count();
     if kind == "mot" && unconfirmed > 0 {
         told.push(format!(
-            "the signs of {unconfirmed} columns are not yet confirmed on a model; compare before use"
+            "the signs of {} are not yet confirmed on a model; compare before use",
+            counted(unconfirmed, "column")
         ));
     }
     told

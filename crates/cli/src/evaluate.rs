@@ -12,6 +12,7 @@ use phalanx_io::evaluation::{
 use phalanx_io::take::JOINT_NAMES;
 use serde_json::{Value, json};
 
+use crate::counts::counted;
 use crate::form::Form;
 use crate::take_file;
 use phalanx_cli::reading;
@@ -141,8 +142,9 @@ fn joints(evaluation: &Evaluation) -> Vec<Compared<'_>> {
 
 fn text(evaluation: &Evaluation, lag: Option<Lag>) -> String {
     let mut text = format!(
-        "{} frames compared, {} without a row of the reference\n",
-        evaluation.matched, evaluation.unmatched
+        "{} compared, {} without a row of the reference\n",
+        counted(evaluation.matched, "frame"),
+        evaluation.unmatched
     );
     let _ = match lag {
         Some(Lag { seconds, correlation }) => writeln!(

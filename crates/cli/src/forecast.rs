@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use phalanx::{Cost, Losses, Progress};
 
+use crate::counts::counted;
 use crate::progress::Bar;
 
 /// Says what a training takes: scenes and memory beforehand, and the time for drawing once some scenes
@@ -23,7 +24,8 @@ impl Forecast {
     pub(crate) fn new(cost: Cost, views: usize) -> Self {
         let Cost { scenes, bytes } = cost;
         let mebibytes = bytes.div_ceil(1 << 20);
-        eprintln!("phalanx: {scenes} scenes to draw for {views} cameras; about {mebibytes} MiB");
+        let (scenes, cameras) = (counted(scenes, "scene"), counted(views, "camera"));
+        eprintln!("phalanx: {scenes} to draw for {cameras}; about {mebibytes} MiB");
         Self { bar: Bar::new(), cost, drawn: Mutex::new(Some((Instant::now(), 0))) }
     }
 

@@ -4,6 +4,7 @@ mod calibrate_hand;
 mod checkpoint;
 mod completions;
 mod convert;
+mod counts;
 mod demo;
 mod doctor;
 mod estimate;

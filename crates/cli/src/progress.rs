@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use crate::counts::counted;
 use indicatif::{ProgressBar, ProgressStyle};
 use phalanx::{LossReason, Losses, Progress};
 
@@ -63,7 +64,7 @@ pub(crate) fn loss_lines(all: &str, losses: &Losses) -> Vec<String> {
     let first = format!("{all} scenes could not be used; {advice}");
     let lines = cameras.into_iter().map(|(camera, (sum, (_, reason)))| {
         let of = if camera.is_empty() { String::new() } else { format!("camera '{camera}': ") };
-        format!("{of}{sum} scenes, mostly: {reason}")
+        format!("{of}{}, mostly: {reason}", counted(sum, "scene"))
     });
     std::iter::once(first).chain(lines).collect()
 }

@@ -12,6 +12,7 @@ use phalanx_sampling::spread_subset;
 use phalanx_segmentation::{BackgroundModel, BackgroundParams, Mask, SkinModel, SkinTrainer};
 use serde_json::json;
 
+use crate::counts::counted;
 use crate::form::Form;
 use crate::input;
 use crate::mask::given_mask;
@@ -111,11 +112,11 @@ fn skin(hand: &Path, mask: &dyn Fn(&str, &str, &RgbImage) -> Result<Mask>) -> Re
             pairs.push((picture, mask));
         }
     }
-    let model = trainer.finish(&format!("{} pictures", pairs.len()))?;
+    let model = trainer.finish(&counted(pairs.len(), "picture"))?;
     let [found, wrong] = [true, false].map(|is_hand| share_of_skin(&model, &pairs, is_hand));
     let text = format!(
-        "the colour of skin from {} pictures: {:.0} % of the hand is told, {:.1} % of the rest is taken for it",
-        pairs.len(),
+        "the colour of skin from {}: {:.0} % of the hand is told, {:.1} % of the rest is taken for it",
+        counted(pairs.len(), "picture"),
         100.0 * found,
         100.0 * wrong
     );

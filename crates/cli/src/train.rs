@@ -11,6 +11,7 @@ use phalanx_hand::{HandShape, Pose, PoseTable};
 use serde_json::json;
 
 use crate::checkpoint::Checkpoint;
+use crate::counts::counted;
 use crate::forecast::Forecast;
 use crate::form::Form;
 use crate::input;
@@ -146,7 +147,7 @@ pub(crate) fn train(arguments: &Arguments) -> Result<()> {
     let mut checkpoint = Checkpoint::beside(&out, ".unfinished");
     let earlier = unfinished(&checkpoint);
     if let Some(earlier) = &earlier {
-        forecast.say(&format!("going on after {} scenes", earlier.seen()));
+        forecast.say(&format!("going on after {}", counted(earlier.seen(), "scene")));
     }
     let mut keep = |part: &PartialTraining| checkpoint.keep(|| Ok(part.to_bytes()?));
     let part = trainer.resume_shard(&rig, &hand, shard, earlier, &mut keep, &forecast);

@@ -5,6 +5,7 @@ use phalanx::{NoProgress, TakeSettings, fit_take};
 use phalanx_camera::Rig;
 use phalanx_hand::Side;
 
+use crate::counts::counted;
 use crate::finding::Finding;
 use crate::recording::agreement::{agreement, named};
 use crate::recording::source::{RecordingArguments, Source};
@@ -24,19 +25,18 @@ fn seen(rig: &Rig, recording: &RecordingArguments) -> Result<Vec<Finding>> {
     let cameras = source.cameras.len();
     let mut findings = vec![Finding::good(
         "recording",
-        format!("{} moments by {cameras} cameras", reader.moments().len()),
+        format!("{} by {}", counted(reader.moments().len(), "moment"), counted(cameras, "camera")),
     )];
     for (camera, &missing) in source.cameras.iter().zip(&reader.timeline.missing) {
         if missing > 0 {
-            let moments = if missing == 1 { "moment" } else { "moments" };
-            let text = format!("no picture at {missing} {moments}");
+            let text = format!("no picture at {}", counted(missing, "moment"));
             findings.push(Finding::doubtful(named(camera), text));
         }
     }
     let mut failures = Vec::new();
     let frames = reader.read_some(MOMENTS, &mut failures);
     findings.extend(failures.first().map(|failure| {
-        let text = format!("{} pictures cannot be used: {failure}", failures.len());
+        let text = format!("{} cannot be used: {failure}", counted(failures.len(), "picture"));
         Finding::broken("recording", text)
     }));
     if failures.is_empty() && cameras > 1 {

@@ -4,15 +4,13 @@ use std::process::Command;
 
 use phalanx::Maker;
 
+use crate::counts::counted;
 use crate::finding::Finding;
 
 pub(super) fn findings() -> Vec<Finding> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     vec![
-        Finding::good(
-            "program",
-            format!("{}, {threads} thread{}", Maker::here(), if threads == 1 { "" } else { "s" }),
-        ),
+        Finding::good("program", format!("{}, {}", Maker::here(), counted(threads, "thread"))),
         ffmpeg(),
     ]
 }

@@ -3,6 +3,7 @@
 use phalanx::{FitDoubt, Missing, TakeFit};
 use phalanx_camera::Camera;
 
+use crate::counts::counted;
 use crate::finding::Finding;
 
 /// How a finding calls a camera.
@@ -19,21 +20,21 @@ pub(crate) fn agreement(camera: &Camera, view: usize, fit: &TakeFit, are_masks: 
         "look at the light, or give masks"
     };
     let views = || fit.frames.iter().map(|frame| frame.views[view]);
-    let moments = fit.frames.len();
+    let all = fit.frames.len();
+    let moments = counted(all, "moment");
     let count = |reason| views().filter(|view| view.missing == Some(reason)).count();
     let (absent, contradicts) = (count(Missing::NoHand), count(Missing::Disagrees));
     let what = named(camera);
-    if 2 * contradicts > moments {
+    if 2 * contradicts > all {
         let text = format!(
-            "it contradicts the other cameras at {contradicts} of {moments} moments: it was moved after the \
+            "it contradicts the other cameras at {contradicts} of {moments}: it was moved after the \
              calibration, the calibration is wrong, its frames are of other moments, or recordings are \
              exchanged, its own or two others'"
         );
         return Finding::broken(what, text);
     }
-    if 2 * absent > moments {
-        let text =
-            format!("no hand where the others see it, at {absent} of {moments} moments: {look}");
+    if 2 * absent > all {
+        let text = format!("no hand where the others see it, at {absent} of {moments}: {look}");
         return Finding::broken(what, text);
     }
     let overlaps: Vec<f64> = views().filter_map(|view| view.overlap).collect();
@@ -42,17 +43,16 @@ pub(crate) fn agreement(camera: &Camera, view: usize, fit: &TakeFit, are_masks: 
     let is_doubt = |doubt: &&FitDoubt| matches!(doubt, FitDoubt::PoorFit { view: of, .. } | FitDoubt::CutOff { view: of } if *of == view);
     let doubts = fit.frames.iter().filter_map(|frame| frame.doubts.iter().find(is_doubt));
     let doubted = doubts.count();
-    if 2 * doubted > moments {
+    if 2 * doubted > all {
         let text = format!(
-            "{text}, which is not as of a hand, or of one that is cut off, at {doubted} of {moments} moments: {look}"
+            "{text}, which is not as of a hand, or of one that is cut off, at {doubted} of {moments}: {look}"
         );
         return Finding::doubtful(what, text);
     }
     if contradicts + absent == 0 {
         return Finding::good(what, text);
     }
-    let text = format!(
-        "{text}; of {moments} moments it contradicts at {contradicts}, shows no hand at {absent}"
-    );
+    let text =
+        format!("{text}; of {moments} it contradicts at {contradicts}, shows no hand at {absent}");
     Finding::doubtful(what, text)
 }

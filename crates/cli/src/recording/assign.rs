@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use phalanx_camera::Camera;
 
+use crate::counts::counted;
+
 /// The recording, or what else `things` are, of each camera of a rig, in its order; `None` for a camera that
 /// has none.
 ///
@@ -44,9 +46,9 @@ pub(crate) fn assign(
     }
     ensure!(
         recordings.len() <= cameras.len(),
-        "{} {things} for the {} cameras of the rig ({})",
+        "{} {things} for the {} of the rig ({})",
         recordings.len(),
-        cameras.len(),
+        counted(cameras.len(), "camera"),
         names()
     );
     let mut assigned = vec![None; cameras.len()];

@@ -11,6 +11,7 @@ use phalanx_io::landmarks::{self, LandmarkTrack, number_in_name};
 
 use super::assign::assign;
 use super::{Recording, Stamp};
+use crate::counts::counted;
 use phalanx_cli::reading;
 
 /// The tracks of a rig's cameras, in its order, in pixels of their images; `None` of a camera without any.
@@ -45,7 +46,8 @@ fn of_one_file(cameras: &[Camera], path: &Path, side: Side) -> Result<Vec<Option
     if found.iter().all(|track| track.camera.is_none()) {
         ensure!(
             count == cameras.len(),
-            "{place}: landmarks of {count} cameras, where the rig has {}: name the camera, such as {}={place}",
+            "{place}: landmarks of {}, where the rig has {}: name the camera, such as {}={place}",
+            counted(count, "camera"),
             cameras.len(),
             cameras[0].name
         );
@@ -91,8 +93,9 @@ fn only(path: &Path, side: Side) -> Result<LandmarkTrack> {
     let count = found.len();
     let [track] = <[_; 1]>::try_from(found).map_err(|_| {
         anyhow::anyhow!(
-            "{}: it holds landmarks of {count} cameras; give it alone, without a camera's name",
-            path.display()
+            "{}: it holds landmarks of {}; give it alone, without a camera's name",
+            path.display(),
+            counted(count, "camera")
         )
     })?;
     Ok(track)
@@ -121,8 +124,9 @@ pub(crate) fn of_frames(
     if let Some(places) = track.places {
         ensure!(
             places == stamps.len() as u64,
-            "camera '{name}' has landmarks of {places} frames, but {} frames: number them, or give as many",
-            stamps.len()
+            "camera '{name}' has landmarks of {}, but {}: number them, or give as many",
+            counted(places, "frame"),
+            counted(stamps.len(), "frame")
         );
         return Ok((0..places).map(|place| track.frames.get(&place).copied()).collect());
     }

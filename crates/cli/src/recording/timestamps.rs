@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail, ensure};
 use phalanx_camera::Camera;
 
 use super::Stamp;
+use crate::counts::counted;
 use phalanx_cli::reading;
 
 /// The frame times of each camera, where there is a file of them.
@@ -39,10 +40,10 @@ pub(crate) fn stamped<'a>(
     let Some(times) = times else { return Ok(Cow::Borrowed(stamps)) };
     ensure!(
         times.len() == stamps.len(),
-        "camera '{}' has {} frames, but {} times",
+        "camera '{}' has {}, but {}",
         camera.name,
-        stamps.len(),
-        times.len()
+        counted(stamps.len(), "frame"),
+        counted(times.len(), "time")
     );
     let with_time = |(stamp, &time): (&Stamp, &f64)| Stamp { time: Some(time), ..stamp.clone() };
     Ok(stamps.iter().zip(times).map(with_time).collect())

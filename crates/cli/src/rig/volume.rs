@@ -9,6 +9,7 @@ use phalanx::{TakeSettings, VolumeEstimate, fit_take, trusted_volume};
 use phalanx_camera::{Camera, Volume};
 use phalanx_hand::{HandShape, Side};
 
+use crate::counts::counted;
 use crate::finding::{Finding, State};
 use crate::progress::Bar;
 use crate::recording::agreement::agreement;
@@ -91,7 +92,7 @@ pub(super) fn seen(source: &Source, side: Side) -> Result<VolumeEstimate> {
     let mut failures = Vec::new();
     let frames = source.reader()?.read_some(MOMENTS, &mut failures);
     if let Some(first) = failures.first() {
-        let said = format!("{} pictures cannot be used: {first}", failures.len());
+        let said = format!("{} cannot be used: {first}", counted(failures.len(), "picture"));
         ensure!(failures.len() < frames.len(), said);
         eprintln!("phalanx: {said}");
     }

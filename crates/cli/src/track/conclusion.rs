@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
+use crate::counts::{counted, either};
 use anyhow::{Result, ensure};
 use phalanx_camera::Camera;
 use phalanx_hand::HandShape;
@@ -62,20 +63,24 @@ impl Tally {
         }
         ensure!(*with_hand > 0, "no frame shows a hand");
         if *with_fewer > 0 {
-            eprintln!("phalanx: in {with_fewer} frames a view was left out (column `left_out`)");
+            let fewer = counted(*with_fewer, "frame");
+            eprintln!("phalanx: in {fewer} a view was left out (column `left_out`)");
         }
         for (camera, &without) in
             cameras.iter().zip(without).filter(|(_, without)| 2 * **without > *frames)
         {
             eprintln!(
-                "phalanx: camera '{}' was left out of {without} of {frames} frames: was it moved or exchanged with \
+                "phalanx: camera '{}' was left out of {without} of {}: was it moved or exchanged with \
                  another, are its frames of other moments, or does it not see the hand? `phalanx doctor` looks",
-                camera.name
+                camera.name,
+                counted(*frames, "frame")
             );
         }
         eprintln!(
-            "phalanx: {with_hand} of {frames} frames show the hand, {doubted} are doubted (column `doubts`); the \
-             hand is {:.0} mm long; {}",
+            "phalanx: {with_hand} of {} {} the hand, {doubted} {} doubted (column `doubts`); the hand is {:.0} mm long; {}",
+            counted(*frames, "frame"),
+            either(*with_hand, "shows", "show"),
+            either(*doubted, "is", "are"),
             hand.length_mm(),
             out.display()
         );

@@ -10,6 +10,7 @@ use phalanx::Maker;
 use serde::{Deserialize, Serialize};
 
 use super::arguments::Arguments;
+use crate::counts::counted;
 use crate::recording::landmarks::is_frame;
 use crate::recording::pictures::is_picture;
 use crate::recording::source::Source;
@@ -108,7 +109,7 @@ fn folder(path: &Path, is_of_frame: fn(&Path) -> bool) -> Result<String> {
         count += 1;
         sum = sum.wrapping_add(u64::from(crc32fast::hash(own.as_bytes())));
     }
-    Ok(format!("of {count} frames with checksum {sum:x}"))
+    Ok(format!("of {} with checksum {sum:x}", counted(count, "frame")))
 }
 
 fn size_and_time(metadata: &Metadata) -> Result<String> {

@@ -25,6 +25,7 @@ use recorded::Recorded;
 use rows::{Kind, Rows};
 use streaming::Streaming;
 
+use crate::counts::counted;
 use crate::progress::Bar;
 use crate::recording::source::Source;
 use crate::rig::check;
@@ -92,7 +93,7 @@ fn streaming<'a>(
     match journal.read()? {
         Some(point) if Rows::are_there(out, point.bytes) => {
             let (done, all) = (point.moment, recorded.times().len());
-            bar.say(&format!("going on after {done} of {all} frames"));
+            bar.say(&format!("going on after {done} of {}", counted(all, "frame")));
             Streaming::resumed(recorded, point, (out, kind))
         }
         earlier => {

@@ -7,6 +7,7 @@ use phalanx_hand::HandShape;
 use phalanx_io::take::{TakeFrame, TakeHeader};
 
 use super::take;
+use crate::counts::counted;
 use crate::progress::Bar;
 use crate::recording::reader::Reader;
 use crate::recording::source::Source;
@@ -46,7 +47,7 @@ impl<'a> Recorded<'a> {
             frame.masks.iter().all(Option::is_none) && frame.landmarks.iter().all(Option::is_none)
         };
         if let (Some(first), true) = (failures.first(), frames.iter().all(is_empty)) {
-            bail!("none of the {} pictures can be used; {first}", failures.len());
+            bail!("none of the {} can be used; {first}", counted(failures.len(), "picture"));
         }
         Ok(fit_take(&self.source.cameras, &frames, settings, bar)?)
     }
@@ -67,13 +68,15 @@ impl<'a> Recorded<'a> {
     pub(super) fn tell(&self) {
         let (cameras, timeline) = (&self.source.cameras, &self.reader.timeline);
         let Timeline { moments, missing, unmatched } = timeline;
-        eprintln!("phalanx: {} moments by {} cameras", moments.len(), cameras.len());
+        let moments = counted(moments.len(), "moment");
+        eprintln!("phalanx: {moments} by {}", counted(cameras.len(), "camera"));
         for (camera, (missing, unmatched)) in cameras.iter().zip(missing.iter().zip(unmatched)) {
             if missing + unmatched > 0 {
                 eprintln!(
-                    "phalanx: camera '{}' has no frame at {missing} moments; {unmatched} of its frames belong to \
-                     none",
-                    camera.name
+                    "phalanx: camera '{}' has no frame at {}, and {} of no moment",
+                    camera.name,
+                    counted(*missing, "moment"),
+                    counted(*unmatched, "frame")
                 );
             }
         }

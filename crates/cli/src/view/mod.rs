@@ -16,6 +16,7 @@ use phalanx_io::page::{ViewPicture, ViewPictures, view_page};
 use phalanx_io::take::{Take, TakeFrame};
 use phalanx_segmentation::Contour;
 
+use crate::counts::counted;
 use crate::rig::check;
 use crate::take_file;
 use footage::Filmed;
@@ -85,8 +86,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             "video"
         }
     };
-    let frames = take.frames.len();
-    eprintln!("phalanx: a {written} of a take of {frames} frames; {}", arguments.out.display());
+    let frames = counted(take.frames.len(), "frame");
+    eprintln!("phalanx: a {written} of a take of {frames}; {}", arguments.out.display());
     Ok(())
 }
 

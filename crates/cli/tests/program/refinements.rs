@@ -75,7 +75,7 @@ fn copies_of_one_frame_are_refused_and_nothing_is_written() {
     let arguments = ["calibrate-hand", "--model", "model", "--frames", "frames", "--mask"];
     let refused = run(desk.folder(), arguments.iter().chain(&["--out", "me.toml"]));
     assert_eq!(refused.code, Some(2));
-    let reason = "the 12 frames show 1 different postures; at least 3";
+    let reason = "the 12 frames show 1 different posture; at least 3";
     assert!(refused.err.contains(reason), "{}", refused.err);
     assert!(!desk.path("me.toml").exists());
 }

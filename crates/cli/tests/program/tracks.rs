@@ -71,7 +71,10 @@ fn what_cannot_be_read_is_named_and_the_rest_is_done() {
     let outcome = track(&desk, &["take", "--out", "take.jsonl"]);
     assert_eq!(outcome.code, Some(1), "{outcome:?}");
     assert!(outcome.err.contains(&format!("frame 0002, camera {}", CAMERAS[0])), "{outcome:?}");
-    assert!(outcome.err.contains("has no frame at 1 moments"), "{outcome:?}");
+    assert!(
+        outcome.err.contains("has no frame at 1 moment, and 0 frames of no moment"),
+        "{outcome:?}"
+    );
     assert_eq!(String::from_utf8(desk.read("take.jsonl")).unwrap().lines().count(), 1 + 6);
 }
 

@@ -35,7 +35,7 @@ fn in_an_empty_folder_a_model_is_trained_and_estimates() {
         "{}",
         outcome.out
     );
-    assert!(outcome.err.contains("scenes to draw for 1 cameras; about "), "{}", outcome.err);
+    assert!(outcome.err.contains("scenes to draw for 1 camera; about "), "{}", outcome.err);
 
     for (name, closed) in [("open.png", 0.0), ("closed.png", 1.0)] {
         seen_from_the_top(&closing(closed)).save(folder.path().join(name)).unwrap();
