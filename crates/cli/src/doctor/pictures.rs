@@ -22,10 +22,15 @@ pub(super) fn findings(rig: &Rig, recording: &RecordingArguments) -> Vec<Finding
 fn seen(rig: &Rig, recording: &RecordingArguments) -> Result<Vec<Finding>> {
     let source = Source::new(rig, recording, Side::Right)?;
     let mut reader = source.reader()?;
-    let cameras = source.cameras.len();
+    let (moments, cameras) = (reader.moments().len(), source.cameras.len());
+    let looked_at = if moments > MOMENTS {
+        format!("{MOMENTS} of them, drawn from all, are looked at, the pictures of others are not")
+    } else {
+        "all are looked at".to_owned()
+    };
     let mut findings = vec![Finding::good(
         "recording",
-        format!("{} by {}", counted(reader.moments().len(), "moment"), counted(cameras, "camera")),
+        format!("{} by {}; {looked_at}", counted(moments, "moment"), counted(cameras, "camera")),
     )];
     for (camera, &missing) in source.cameras.iter().zip(&reader.timeline.missing) {
         if missing > 0 {

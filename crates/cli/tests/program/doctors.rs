@@ -56,9 +56,11 @@ fn what_fits_together_is_good_and_leads_on() {
     assert_eq!(code, Some(0), "{report:#}");
     assert_eq!(report["next"], "phalanx track --rig rig.toml take --mask --out take.csv");
     let good = in_state(&report, "good").join("\n");
-    for part in
-        ["8 moments by 2 cameras", "the same in the rig and the model", "overlaps what it sees"]
-    {
+    for part in [
+        "8 moments by 2 cameras; all are looked at",
+        "the same in the rig and the model",
+        "overlaps what it sees",
+    ] {
         assert!(good.contains(part), "no '{part}' in {good}");
     }
 }
@@ -141,6 +143,8 @@ fn a_camera_that_contradicts_the_others_is_named() {
     let (code, report) =
         doctor(&desk, &["--rig", "moved.toml", "phalanx-demo/recording", "--mask"]);
     assert_eq!(code, Some(2), "{report:#}");
+    let good = in_state(&report, "good").join("\n");
+    assert!(good.contains("60 moments by 3 cameras; 12 of them, drawn from all, are"), "{good}");
     let broken = in_state(&report, "broken");
     assert_eq!(broken.len(), 1, "{broken:?}");
     assert!(broken[0].contains(&moved.cameras[1].name) && broken[0].contains("it contradicts"));
