@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::counts::counted;
 use anyhow::{Context, Result, bail, ensure};
 use phalanx_camera::Camera;
 
-use crate::counts::counted;
+/// So many of the names in a folder are said.
+const NAMED: usize = 4;
 
 /// The recording, or what else `things` are, of each camera of a rig, in its order; `None` for a camera that
 /// has none.
@@ -17,7 +19,7 @@ pub(crate) fn assign(
     recordings: &[String],
     things: &str,
 ) -> Result<Vec<Option<PathBuf>>> {
-    let names = || cameras.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>().join(", ");
+    let names = || names(cameras);
     if let [folder] = recordings
         && cameras.len() > 1
         && named(cameras, folder).is_none()
@@ -37,9 +39,10 @@ pub(crate) fn assign(
         let found = folders_of(cameras, Path::new(folder));
         return found.with_context(|| {
             format!(
-                "{folder}: it is to hold the {things} of all cameras, but nothing in it is named like one ({}); \
+                "{folder}: it is to hold the {things} of all cameras, but nothing in it is named like one ({}): {}; \
                  one camera's are given as {}=PATH",
                 names(),
+                held(Path::new(folder)),
                 cameras[0].name
             )
         });
@@ -71,6 +74,33 @@ pub(crate) fn assign(
     Ok(assigned)
 }
 
+/// The names of cameras.
+pub(crate) fn names(cameras: &[Camera]) -> String {
+    cameras.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>().join(", ")
+}
+
+/// What a folder holds, in words, the first few by name.
+fn held(folder: &Path) -> String {
+    let mut names: Vec<String> = entries(folder)
+        .iter()
+        .filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned()))
+        .collect();
+    names.sort();
+    let more = if names.len() > NAMED { ", …" } else { "" };
+    names.truncate(NAMED);
+    if names.is_empty() {
+        "it is empty".to_owned()
+    } else {
+        format!("it holds {}{more}", names.join(", "))
+    }
+}
+
+/// The files and folders in a folder; none of one that cannot be read.
+fn entries(folder: &Path) -> Vec<PathBuf> {
+    let read = std::fs::read_dir(folder);
+    read.map(|read| read.filter_map(|entry| Some(entry.ok()?.path())).collect()).unwrap_or_default()
+}
+
 /// A recording as `NAME=PATH`: the number of the camera, and the path.
 pub(crate) fn named<'a>(cameras: &[Camera], recording: &'a str) -> Option<(usize, &'a str)> {
     let (name, path) = recording.split_once('=')?;
@@ -79,8 +109,7 @@ pub(crate) fn named<'a>(cameras: &[Camera], recording: &'a str) -> Option<(usize
 
 /// What a folder holds for each camera: a folder or a file of its name; `None` where it holds nothing for any.
 fn folders_of(cameras: &[Camera], folder: &Path) -> Option<Vec<Option<PathBuf>>> {
-    let entries: Vec<PathBuf> =
-        std::fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    let entries = entries(folder);
     let of = |camera: &Camera| {
         let mut own = entries.iter().filter(|path| {
             let name = if path.is_dir() { path.file_name() } else { path.file_stem() };
@@ -131,6 +160,12 @@ mod tests {
         let empty = tempfile::tempdir().unwrap();
         let said = refusal(&empty.path().display().to_string());
         assert!(said.contains("it is to hold the recordings of all cameras"), "{said}");
+        assert!(said.contains(": it is empty; one camera's are given as "), "{said}");
+        for name in ["e", "d", "c", "b", "a"] {
+            std::fs::create_dir(empty.path().join(name)).unwrap();
+        }
+        let said = refusal(&empty.path().display().to_string());
+        assert!(said.contains(": it holds a, b, c, d, …; one camera's are given as "), "{said}");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use image::{DynamicImage, imageops::FilterType};
 use phalanx_camera::{Camera, Rig};
 use phalanx_io::take::Take;
 
-use crate::recording::assign::assign;
+use crate::recording::assign::{assign, names};
 use crate::recording::timeline::{Moment, Timeline};
 use crate::recording::{Recording, Stamp, open, timestamps};
 
@@ -47,8 +47,9 @@ pub(super) fn open_all(
         both.filter(|(camera, _)| views.contains(&camera.name)).unzip();
     ensure!(
         !cameras.is_empty(),
-        "none of the take's cameras ({}) has a recording",
-        views.join(", ")
+        "none of the take's cameras ({}) has a recording; the rig's cameras are {}: is it another take's rig?",
+        views.join(", "),
+        names(&rig.cameras)
     );
     let times = timestamps::of_cameras(timestamps, &cameras)?;
     let recordings: Vec<Box<dyn Recording>> =

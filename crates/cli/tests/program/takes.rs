@@ -127,6 +127,12 @@ fn pictures_are_shown_with_joints_and_outline_of_the_hand() {
     let over_one = folder.refusal(&[&arguments[..], &["frames/top/1.png"]].concat());
     assert!(over_one.contains("this is the input frames/top"), "{over_one}");
 
+    let other = include_str!("../../fixtures/desk.toml").replace("\"top\"", "\"above\"");
+    std::fs::write(at("other.toml"), other).unwrap();
+    let given = ["view", "take.csv", "--frames", "above=frames/top", "--rig", "other.toml"];
+    let said = folder.refusal(&[&given[..], &["--out", "other.html"]].concat());
+    assert!(said.contains(") has a recording; the rig's cameras are side, above, "), "{said}");
+
     // The same on a sheet, and as a video: two pictures of black, with an outline.
     let filmed = |others: &[&str]| {
         folder.writes(&[&arguments[..arguments.len() - 1], others].concat());
