@@ -1,6 +1,5 @@
 //! The options of `phalanx track`.
 
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail, ensure};
@@ -30,9 +29,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "HZ", value_parser = rate)]
     pub(super) rate: Option<f64>,
     /// A recording of up to so many moments is fitted as a whole. Of a longer one as many, drawn from all of it, tell
-    /// the hand, which is then tracked from frame to frame.
-    #[arg(long, value_name = "MOMENTS", default_value = "240")]
-    pub(super) fit_together: NonZeroUsize,
+    /// the hand, which is then tracked from frame to frame. At least 6: fewer tell no hand.
+    #[arg(long, value_name = "MOMENTS", default_value = "240", value_parser = together)]
+    pub(super) fit_together: usize,
     /// Fit all moments together, each in the light of all others, however many there are: takes memory and
     /// some twenty times as long as tracking, and begins anew if it is broken off.
     #[arg(long, conflicts_with = "fit_together")]
@@ -46,6 +45,20 @@ pub(crate) struct Arguments {
     /// Write the hand that was fitted, for later recordings of the same person.
     #[arg(long, value_name = "FILE.toml")]
     pub(super) save_hand: Option<PathBuf>,
+}
+
+/// Of fewer moments a wrong camera is not told from the others, and half of them are too few to learn proportions from that
+/// are tried on the other half: one moment gave a hand of 184 mm where all gave 192.
+const LEAST_TOGETHER: usize = 6;
+
+fn together(text: &str) -> Result<usize> {
+    let moments = text.parse()?;
+    ensure!(
+        moments >= LEAST_TOGETHER,
+        "at least {LEAST_TOGETHER} moments tell a hand: its proportions are learnt from half of them and tried on the \
+         other half; leave the option out, or give 24 if time is short"
+    );
+    Ok(moments)
 }
 
 fn rate(text: &str) -> Result<f64> {
@@ -86,6 +99,6 @@ impl Arguments {
 
     /// How many moments are fitted together at most.
     pub(super) fn fitted_together(&self) -> usize {
-        if self.whole_take { usize::MAX } else { self.fit_together.get() }
+        if self.whole_take { usize::MAX } else { self.fit_together }
     }
 }

@@ -86,6 +86,7 @@ fn wrong_use_is_refused_by_name() {
         (&["nowhere", "elsewhere", "--out", "t.csv"], "nowhere"),
         (&["a", "b", "c", "--out", "t.csv"], "3 recordings for the 2 cameras"),
         (&["nowhere", "--out", "t.csv"], "nowhere: there is no such file or folder"),
+        (&["take", "--fit-together", "5", "--out", "t.csv"], "at least 6 moments tell a hand"),
         (&["take", "--rate", "0", "--out", "t.csv"], "frames a second, over 0"),
         (&["take", "--hand", "me.toml", "--out", "t.csv"], "me.toml"),
         (&["take", "--timestamps", "times.csv", "--out", "t.csv"], "times.csv"),
