@@ -16,8 +16,10 @@ use crate::estimator::hypotheses::Hypothesis;
 use crate::estimator::model::Estimator;
 use crate::estimator::observation::Observation;
 use crate::estimator::placement::PLACED;
+use crate::estimator::refined_errors::RefinedDeviations;
 use crate::features::describer::working_camera;
 use crate::images::picture::Picture;
+use crate::restarts;
 use crate::synthesis::postures;
 use crate::window::Framing;
 
@@ -27,7 +29,7 @@ use crate::window::Framing;
 /// most doubts come from.
 fn apart(refined: &PoseFit, estimate: &Estimate) -> f64 {
     let is_anywhere = estimate.observation.framing() == Framing::Window;
-    match (refined.nuisance_fitted, refined.ious.len()) {
+    match (refined.nuisance.is_some(), refined.ious.len()) {
         (true, _) if is_anywhere => 0.0, // always
         (true, _) => 0.35,
         (false, 2) => 0.28,
@@ -47,6 +49,15 @@ pub struct RefinedEstimate {
     pub fit: PoseFit,
     /// Other poses that explain what was seen, the more believable first.
     pub others: Vec<PoseFit>,
+}
+
+/// The fits of an estimate.
+pub(crate) struct RefinedFits {
+    pub(crate) best: PoseFit,
+    /// Other poses that explain what was seen, the more believable first.
+    others: Vec<PoseFit>,
+    /// How well the best is known.
+    pub(crate) deviations: RefinedDeviations,
 }
 
 /// Fits the hand to the silhouettes that it was estimated from.
@@ -209,17 +220,24 @@ impl Refiner {
         Ok(calibration.run(&self.hand, &self.rest, frames)?)
     }
 
-    /// An estimate after refinement: the pose, its deviations as the curvature of the fit has them, and the
-    /// joints.
-    fn refined_estimate(&self, estimate: Estimate, refined: &PoseFit) -> Result<Estimate> {
+    /// How well the pose of an estimate's fit is known, beside other fits.
+    fn deviations(
+        &self,
+        evidence: &[SilhouetteObservation],
+        estimate: &Estimate,
+        (fit, others): (&PoseFit, &[PoseFit]),
+    ) -> Result<RefinedDeviations> {
         let prior = self.prior(&estimate.pose, &estimate.std)?;
-        let mut std = [None; Dof::COUNT];
-        let diagonal = refined.covariance.iter().step_by(prior.dofs().len() + 1);
+        let hand = (&self.hand, &self.rest);
+        let of_digits = self.refinement.posture_variance(hand, evidence, fit, &prior)?;
+        let of_others = restarts::variance_by_others(fit, others);
+        let mut curvature = [None; Dof::COUNT];
+        let diagonal = fit.covariance.iter().step_by(prior.dofs().len() + 1);
         for (dof, variance) in prior.dofs().iter().zip(diagonal) {
-            std[dof.index()] = Some(variance.max(0.0).sqrt());
+            curvature[dof.index()] = Some(variance.max(0.0).sqrt());
         }
-        let joints = self.hand.pose(&refined.pose, &self.rest).joints;
-        Ok(Estimate { pose: refined.pose, std, joints, ..estimate })
+        let postures = std::array::from_fn(|dof| (of_digits[dof] + of_others[dof]).sqrt());
+        Ok(RefinedDeviations { curvature, postures })
     }
 
     /// Estimates the pose from the cameras' pictures and refines it, with every hypothesis that the
@@ -250,21 +268,30 @@ impl Refiner {
         estimator: &Estimator,
         estimate: Estimate,
     ) -> Result<RefinedEstimate> {
-        let evidence = self.evidence_of(&estimate.observation)?;
-        let hypotheses = match estimator.error_model() {
-            Some(_) => estimator.hypotheses(&estimate, Self::starts(evidence.len()))?,
-            None => Vec::new(),
-        };
-        let mut fits = self.refine_best(&evidence, &estimate, &hypotheses)?.into_iter();
-        let fit =
-            fits.next().ok_or(Error::Mismatch { part: "refined poses", found: 0, expected: 1 })?;
-        let refined = self.refined_estimate(estimate.clone(), &fit)?;
+        let RefinedFits { best: fit, others, deviations } = self.fits(estimator, &estimate)?;
+        let joints = self.hand.pose(&fit.pose, &self.rest).joints;
+        let refined = Estimate { pose: fit.pose, joints, ..estimate.clone() };
         let refined = match estimator.refined_errors() {
-            Some(errors) => errors.scaled(refined, fit.nuisance_fitted),
-            None => refined,
+            Some(errors) => errors.scaled(refined, &deviations, fit.nuisance.is_some()),
+            None => Estimate { std: deviations.with_postures(1.0), ..refined },
         };
         let refined = estimator.checked(&self.hand, refined)?;
-        Ok(RefinedEstimate { estimate, refined, fit, others: fits.collect() })
+        Ok(RefinedEstimate { estimate, refined, fit, others })
+    }
+
+    /// The fits of an estimate with every hypothesis that the estimator has about it.
+    pub(crate) fn fits(&self, estimator: &Estimator, estimate: &Estimate) -> Result<RefinedFits> {
+        let evidence = self.evidence_of(&estimate.observation)?;
+        let hypotheses = match estimator.error_model() {
+            Some(_) => estimator.hypotheses(estimate, Self::starts(evidence.len()))?,
+            None => Vec::new(),
+        };
+        let mut fits = self.refine_best(&evidence, estimate, &hypotheses)?.into_iter();
+        let best =
+            fits.next().ok_or(Error::Mismatch { part: "refined poses", found: 0, expected: 1 })?;
+        let others: Vec<PoseFit> = fits.collect();
+        let deviations = self.deviations(&evidence, estimate, (&best, &others))?;
+        Ok(RefinedFits { best, others, deviations })
     }
 
     /// Refines an estimate and, where that leaves borders apart, a hand that may be anywhere had to be

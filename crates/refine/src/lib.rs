@@ -21,6 +21,7 @@ pub use observation::silhouette::SilhouetteObservation;
 pub use pose_fit::agreement::Agreement;
 pub use pose_fit::boundary_noise::{BoundaryNoise, BoundaryResiduals};
 pub use pose_fit::fit::PoseFit;
+pub use pose_fit::fitted_nuisance::FittedNuisance;
 pub use pose_fit::landmark_noise::LandmarkNoise;
 pub use pose_fit::posterior::Posterior;
 pub use pose_fit::screening::Screened;

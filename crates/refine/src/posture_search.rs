@@ -87,14 +87,38 @@ impl Search<'_> {
         for digit in Digit::ALL {
             let mut background = self.background(&found.pose, &[digit])?;
             let standing = self.standing(&found.pose, &mut background)?;
-            let mut tried = Vec::with_capacity(PLACES * PLACES);
-            for ([i, j], pose) in self.postures(digit, &found.pose) {
-                let cost = self.cost_below(standing.cost + SLOPE, &pose, &mut background)?;
-                tried.extend(cost.map(|cost| Costed { cost, pose, places: [i, j, 0, 0] }));
-            }
+            let tried = self.tried(digit, &standing, &mut background)?;
             found = found.and(&standing, &self.lowest(&standing, tried, &mut background)?);
         }
         Ok(found)
+    }
+
+    /// The postures of a digit that explain the silhouettes best, and how much more speaks against each than against the
+    /// pose that they differ from.
+    pub(crate) fn alternatives(&mut self, digit: Digit, pose: &Pose) -> Result<Vec<(Pose, f64)>> {
+        let mut background = self.background(pose, &[digit])?;
+        let standing = self.standing(pose, &mut background)?;
+        let tried = self.tried(digit, &standing, &mut background)?;
+        let follow = |valley: &Costed| {
+            let found = self.follow(valley, &mut background)?;
+            Ok((found.pose, found.cost - standing.cost))
+        };
+        valleys(tried).iter().map(follow).collect()
+    }
+
+    /// The postures of a digit on the grid against which not much more speaks than against a pose.
+    fn tried(
+        &mut self,
+        digit: Digit,
+        standing: &Costed,
+        background: &mut Background,
+    ) -> Result<Vec<Costed>> {
+        let mut tried = Vec::with_capacity(PLACES * PLACES);
+        for ([i, j], pose) in self.postures(digit, &standing.pose) {
+            let cost = self.cost_below(standing.cost + SLOPE, &pose, background)?;
+            tried.extend(cost.map(|cost| Costed { cost, pose, places: [i, j, 0, 0] }));
+        }
+        Ok(tried)
     }
 
     /// Tries neighbouring fingers together: where one was taken for the other, neither finds its

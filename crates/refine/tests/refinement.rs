@@ -260,8 +260,27 @@ fn a_strange_hand_is_doubted_and_then_fits() {
         refinement.fit(&given, &rest, &evidence, &truth, &prior(truth)).unwrap()
     };
     let (trusted, nuisance_fitted) = (run(&trusting), run(&with_nuisance));
-    assert!(!trusted.nuisance_fitted && nuisance_fitted.nuisance_fitted);
+    assert!(trusted.nuisance.is_none() && nuisance_fitted.nuisance.is_some());
     assert!(nuisance_fitted.boundary_rms_px < trusted.boundary_rms_px);
+}
+
+/// One camera sees fingers before the palm, which it hardly tells from others; three see all of them.
+#[test]
+fn fewer_views_leave_more_postures_open() {
+    let (rig, hand) = (rig(), HandShape::adult());
+    let rest = rig.volume.rest_frame();
+    let truth = hand_bent_by([0.3, 1.2, 1.2, 1.2, 1.2], 0.2);
+    let vague = PosePrior::independent(truth, &[1.0; Dof::COUNT]).unwrap();
+    let evidence = see(&rig, &hand, &truth, &rest);
+    let open_deg = |evidence: &[SilhouetteObservation]| {
+        let settings = PoseFitSettings::default();
+        let fit = settings.fit(&hand, &rest, evidence, &truth, &vague).unwrap();
+        let variances = settings.posture_variance((&hand, &rest), evidence, &fit, &vague).unwrap();
+        assert!(variances[20..].iter().all(|variance| *variance == 0.0));
+        (variances[..20].iter().sum::<f64>() / 20.0).sqrt().to_degrees()
+    };
+    let (one, three) = (open_deg(&evidence[..1]), open_deg(&evidence));
+    assert!(one > 5.0 && three < 0.8 * one, "{one}° of one view, {three}° of three");
 }
 
 #[test]

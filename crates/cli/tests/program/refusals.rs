@@ -250,8 +250,8 @@ fn models_that_are_none() {
     corrupt[1000] ^= 1;
     desk.refuses_model(&corrupt, &["corrupt: checksum"]);
     let mut newer = model;
-    newer[8] = 11;
-    desk.refuses_model(&newer, &["the model has format 11; this version reads format 10"]);
+    newer[8] = 12;
+    desk.refuses_model(&newer, &["the model has format 12; this version reads format 11"]);
 }
 
 #[test]

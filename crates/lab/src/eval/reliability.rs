@@ -217,9 +217,11 @@ fn body(found: &[Found], samples: usize) -> String {
          of a normal distribution, by kind of test; three views, learnt from {samples} scenes. Above the line deviations\n\
          are larger than they need be, below it they are too small.\n\n\
          ![{}](reliability.svg)\n\n{table}\n\n\
-         How large errors and deviations are, means. Refined deviations are scaled by what drawn scenes say, of strange hands\n\
-         before turned cameras with ragged borders and of the hand as given; where tails are heavy, the interval that holds 95 %\n\
-         is wider than 1.96 deviations. Why some errors are beyond eight of them was not looked into.\n\n\
+         How large errors and deviations are, means. Refined deviations join what the curvature of the fit and other postures\n\
+         of the digits say, and are scaled by what drawn scenes say, of strange hands before turned cameras with ragged borders\n\
+         and of the hand as given; where tails are heavy, the interval that holds 95 % is wider than 1.96 deviations. Errors\n\
+         beyond eight of them are of fingers that were fitted in another posture, or one for another: the silhouettes are\n\
+         explained as well as by the truth, or nearly so.\n\n\
          {sizes}\n",
         chart(found).words()
     )

@@ -18,7 +18,7 @@ use crate::estimator::regression::FittedRegressor;
 use crate::estimator::subset_regression::SubsetRegression;
 use crate::features::descriptor::Descriptor;
 
-const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 10 };
+const MODEL: Container = Container { what: "model", mark: *b"PHALANX\0", format: 11 };
 
 /// What the payload holds.
 #[derive(Serialize, Deserialize)]

@@ -50,8 +50,12 @@ pub(super) fn near(cameras: usize) -> PoseFitSettings {
 /// doubts it, so that one camera's outlines are compared.
 pub(super) fn believing(cameras: usize) -> PoseFitSettings {
     let drawn = if cameras > 1 { DrawnTerm::Area } else { DrawnTerm::Outline };
-    let mut settings =
-        PoseFitSettings { max_restarts: 0, drawn, ..PoseFitSettings::of_noise(NOISE) };
+    let mut settings = PoseFitSettings {
+        max_restarts: 0,
+        settling_steps: 0,
+        drawn,
+        ..PoseFitSettings::of_noise(NOISE)
+    };
     // Starts were screened, which is the coarsest level.
     settings.levels.remove(0);
     for level in &mut settings.levels {

@@ -37,7 +37,7 @@ impl Found {
             unexplained: Vec::new(),
             landmarks_unexplained: Vec::new(),
             boundary_rms_px: 0.0,
-            nuisance_fitted: false,
+            nuisance: None,
             energy: 0.0,
             converged: true,
             steps: 0,

@@ -10,7 +10,7 @@ use crate::estimator::model::Estimator;
 use crate::estimator::refined_errors::{RefinedErrors, RefinedTrial};
 use crate::losses::Losses;
 use crate::progress::Progress;
-use crate::refiner::{RefinedEstimate, Refiner};
+use crate::refiner::{RefinedFits, Refiner};
 use crate::synthesis::augmentation::Augmentation;
 use crate::synthesis::sampler::SceneSampler;
 use crate::synthesis::scene::{Scene, SceneSource};
@@ -86,15 +86,13 @@ impl Estimator {
     ) -> Result<RefinedTrial> {
         let observation = describer.observation(scene)?.seen_by(cameras);
         let estimate = self.estimate_observation(observation, workspace)?;
-        let RefinedEstimate { refined, fit, .. } = refiner.refine_estimate(self, estimate)?;
-        let error = |dof: Dof| {
-            let std = refined.std[dof.index()].filter(|std| *std > 0.0)?;
-            Some((refined.pose[dof] - scene.pose[dof]).abs() / std)
-        };
+        let RefinedFits { best: fit, deviations, .. } = refiner.fits(self, &estimate)?;
+        let error = |dof: Dof| (fit.pose[dof] - scene.pose[dof]).abs();
         Ok(RefinedTrial {
             views: cameras.count(),
-            is_doubted: fit.nuisance_fitted,
+            is_doubted: fit.nuisance.is_some(),
             errors: Dof::ALL.map(error),
+            deviations,
         })
     }
 }

@@ -9,6 +9,7 @@ use crate::geometry::drawn_term::DrawnTerm;
 use crate::observation::evidence::Evidence;
 use crate::observation::silhouette::SilhouetteObservation;
 use crate::pose_fit::agreement::Agreement;
+use crate::pose_fit::fitted_nuisance::FittedNuisance;
 use crate::pose_fit::settings::PoseFitSettings;
 use crate::posture_search::Search;
 use crate::priors::pose::PosePrior;
@@ -35,8 +36,8 @@ pub struct PoseFit {
     pub landmarks_unexplained: Vec<f64>,
     /// Root of the mean (robust) squared distance of the boundaries, px; 0 of landmarks alone.
     pub boundary_rms_px: f64,
-    /// Whether the hand's shape and the cameras' places were fitted too.
-    pub nuisance_fitted: bool,
+    /// The hand's shape and the cameras' places, where they were fitted too.
+    pub nuisance: Option<FittedNuisance>,
     /// The energy: half the robust squared distances of boundaries and landmarks over their noise, what areas between
     /// silhouettes cost ([`DrawnTerm`]), and what the prior and the joints' ranges say.
     pub energy: f64,
@@ -105,20 +106,36 @@ impl PoseFitSettings {
         let given = levenberg_marquardt(&problem, start, self.finest(), stay, &mut views)?;
         let best = self.coarse_to_fine(&problem, &given, &mut views)?;
         let mut best = self.restart(&problem, best, &mut views)?;
-        if best.energy > (1.0 - WORTH_LEAVING) * given.energy {
+        let stays = best.energy > (1.0 - WORTH_LEAVING) * given.energy;
+        if stays {
             best = Outcome { converged: best.converged, steps: best.steps, ..given.clone() };
         }
-        let mut nuisance_fitted = false;
-        if let Some(nuisance) = self
-            .nuisance
-            .filter(|nuisance| best.boundary_rms_px(self.noise) > nuisance.above_rms_px)
-        {
-            nuisance_fitted = true;
+        let misses = best.boundary_rms_px(self.noise);
+        if let Some(nuisance) = self.nuisance.filter(|nuisance| misses > nuisance.above_rms_px) {
             problem.freedom = FreeParameters { hand: nuisance.hand, cameras: nuisance.cameras };
             best = self.fit_nuisance(&problem, &given, &best, &mut views)?;
+            best = self.settled(&problem, best, &mut views)?;
+        } else if !stays {
+            best = self.settled(&problem, best, &mut views)?;
         }
-        let fit = self.concluded(&problem, &best, &mut views)?;
-        Ok(PoseFit { nuisance_fitted, ..fit })
+        self.concluded(&problem, &best, &mut views)
+    }
+
+    /// The last level once more, until the fit has converged.
+    fn settled(
+        &self,
+        problem: &Problem<'_>,
+        best: Outcome,
+        views: &mut [Vec<ViewMatcher>],
+    ) -> Result<Outcome> {
+        if best.converged || self.settling_steps == 0 {
+            return Ok(best);
+        }
+        let Outcome { state, steps, .. } = best;
+        let stop = self.settling();
+        let mut settled = levenberg_marquardt(problem, state, self.finest(), stop, views)?;
+        settled.steps += steps;
+        Ok(settled)
     }
 
     /// What came of one frame.
@@ -131,6 +148,8 @@ impl PoseFitSettings {
         let agreements = self.agreements(problem, best, &mut views[0])?;
         let (_, shared_prior) = problem.shared_prior(&best.state.shared);
         let numbers = problem.frames[0].prior.dofs().len();
+        let is_free = problem.freedom.hand.is_some() || problem.freedom.cameras.is_some();
+        let nuisance = is_free.then(|| FittedNuisance::of(problem, &best.state));
         Ok(PoseFit {
             pose: best.state.frames[0].pose,
             covariance: covariance(&best.frames[0], &shared_prior, numbers).ok_or_else(|| {
@@ -142,7 +161,7 @@ impl PoseFitSettings {
             landmarks_unexplained: best.landmarks_unexplained(),
             boundary_rms_px: best.boundary_rms_px(self.noise),
             energy: best.energy,
-            nuisance_fitted: false,
+            nuisance,
             converged: best.converged,
             steps: best.steps,
         })
@@ -290,17 +309,9 @@ fn search_postures(
     views: &mut [Vec<ViewMatcher>],
 ) -> Result<(State, f64)> {
     let Frame { evidence, prior } = problem.frames[0];
-    let motions: Vec<DAffine3> = (0..evidence.silhouettes.len())
-        .map(|view| problem.motion(&state.frames[0], &state.shared, view))
-        .collect();
-    let mut search = Search {
-        hand: &state.shared.shape.hand(problem.given),
-        rest: problem.rest,
-        evidence: evidence.silhouettes,
-        prior,
-        motions: &motions,
-        views: &mut views[0],
-    };
+    let FittedNuisance { hand, motions } = &FittedNuisance::of(problem, state);
+    let (rest, evidence, views) = (problem.rest, evidence.silhouettes, &mut views[0]);
+    let mut search = Search { hand, rest, evidence, prior, motions, views };
     let mut state = state.clone();
     let pose = &mut state.frames[0].pose;
     let found = match tries {

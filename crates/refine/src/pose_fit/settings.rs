@@ -23,6 +23,8 @@ pub struct PoseFitSettings {
     pub max_restarts: usize,
     /// Root of the mean (robust) squared distance of the boundaries that needs no second try, px.
     pub restart_threshold: f64,
+    /// Steps at most that a fit takes in the end until it has [converged](crate::PoseFit::converged).
+    pub settling_steps: usize,
     /// The share of its boundary from which on a view that a pose leaves unexplained counts less, so that one
     /// that shows something else cannot drag the pose along; `None` where all views are believed.
     pub disagreement: Option<f64>,
@@ -61,6 +63,7 @@ impl Default for PoseFitSettings {
             margin: 1.0,
             max_restarts: 1,
             restart_threshold: 0.29,
+            settling_steps: 20,
             disagreement: None,
             drawn: DrawnTerm::Outline,
             nuisance: None,
@@ -94,6 +97,11 @@ impl PoseFitSettings {
     #[must_use]
     pub fn of_strangers() -> Self {
         Self { nuisance: Some(NuisanceParameters::default()), ..Self::default() }
+    }
+
+    /// When a fit that has gone through all levels stops: where it has converged.
+    pub(crate) fn settling(&self) -> Stop {
+        Stop { steps: self.settling_steps, gain: 0.0, target_energy: ANY_ENERGY }
     }
 
     /// The measure of the last level.

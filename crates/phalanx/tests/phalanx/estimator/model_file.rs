@@ -103,8 +103,8 @@ fn other_files_and_formats_are_refused_by_name() {
         assert_eq!(message(foreign), "not a phalanx model: the file does not begin with its mark");
     }
     let mut newer = bytes();
-    newer[8..12].copy_from_slice(&11_u32.to_le_bytes());
-    let expected = "the model has format 11; this version reads format 10: train again, or use the \
+    newer[8..12].copy_from_slice(&12_u32.to_le_bytes());
+    let expected = "the model has format 12; this version reads format 11: train again, or use the \
                     version that wrote it";
     assert_eq!(message(&newer), expected);
     let mut endless = bytes();
