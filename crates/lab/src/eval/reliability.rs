@@ -68,7 +68,12 @@ struct Found {
     error_deg: f64,
     std_deg: f64,
     interval_deg: f64,
+    /// The share of fits that converged; `None` of estimates.
+    converged: Option<f64>,
 }
+
+/// An answer, and whether its fit converged, if it is of one.
+type Answer = (Estimate, Option<bool>);
 
 /// One angle of one scene, radians.
 struct Angle {
@@ -91,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         let seen = Seen::of(test, (&rig, &hand), EVERY[0], &bar)?;
         found.push(Found::of(seen.test.to_owned(), &seen, &|masks, workspace| {
             let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
-            Ok(estimator.estimate(&pictures, workspace)?)
+            Ok((estimator.estimate(&pictures, workspace)?, None))
         })?);
     }
     for test in REFINED {
@@ -103,7 +108,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
                 let picture = |(mask, &used): (_, &bool)| used.then_some(Picture::Mask(mask));
                 let pictures: Vec<_> = masks.iter().zip(&used).map(picture).collect();
                 let estimate = estimator.estimate(&pictures, workspace)?;
-                Ok(refiner.refine_estimate(&estimator, estimate)?.refined)
+                let refined = refiner.refine_estimate(&estimator, estimate)?;
+                Ok((refined.refined, Some(refined.fit.converged)))
             })?;
             let is_of_all = views.len() == rig.cameras.len();
             found.push(Found { is_of_all, ..of_views });
@@ -132,20 +138,23 @@ impl Found {
     fn of(
         name: String,
         seen: &Seen,
-        look: &(impl Fn(&[Mask], &mut Workspace) -> Result<Estimate> + Sync),
+        look: &(impl Fn(&[Mask], &mut Workspace) -> Result<Answer> + Sync),
     ) -> Result<Self> {
         let angles = active_angles();
         let compare = |workspace: &mut Workspace, (truth, masks): &(Pose, Vec<Mask>)| {
-            let estimate = look(masks, workspace)?;
+            let (estimate, converged) = look(masks, workspace)?;
             let angle = |&dof: &Dof| {
                 let error = (estimate.pose[dof] - truth[dof]).abs();
                 let (std, interval) = estimate.std[dof.index()].zip(estimate.interval(dof))?;
                 Some(Angle { error, std, interval })
             };
-            Ok(angles.iter().filter_map(angle).collect())
+            Ok((angles.iter().filter_map(angle).collect(), converged))
         };
         let all = seen.scenes.par_iter().map_init(Workspace::default, compare);
-        let all: Vec<Angle> = all.collect::<Result<Vec<Vec<_>>>>()?.into_iter().flatten().collect();
+        let (all, converged): (Vec<Vec<Angle>>, Vec<Option<bool>>) =
+            all.collect::<Result<Vec<_>>>()?.into_iter().unzip();
+        let all: Vec<Angle> = all.into_iter().flatten().collect();
+        let converged: Option<Vec<bool>> = converged.into_iter().collect();
         let mean = |of: &dyn Fn(&Angle) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
         let share =
             |holds: &dyn Fn(&Angle) -> bool| mean(&|angle| f64::from(u8::from(holds(angle))));
@@ -159,6 +168,9 @@ impl Found {
             error_deg: mean(&|angle| angle.error).to_degrees(),
             std_deg: mean(&|angle| angle.std).to_degrees(),
             interval_deg: mean(&|angle| angle.interval).to_degrees(),
+            converged: converged.map(|fits| {
+                fits.iter().filter(|converged| **converged).count() as f64 / fits.len() as f64
+            }),
         })
     }
 }
@@ -201,6 +213,7 @@ fn body(found: &[Found], samples: usize) -> String {
         "half of the 95 % interval",
         "within it",
         "beyond 8 deviations, of 1,000",
+        "fits converged",
     ]);
     for found in found {
         sizes.add_row([
@@ -210,6 +223,7 @@ fn body(found: &[Found], samples: usize) -> String {
             format!("{:.2}°", found.interval_deg),
             percent(found.within_interval),
             format!("{:.1}", found.excluded),
+            found.converged.map_or_else(|| "–".to_owned(), percent),
         ]);
     }
     format!(

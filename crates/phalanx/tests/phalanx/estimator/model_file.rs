@@ -88,7 +88,7 @@ fn a_flipped_bit_is_noticed() {
         let error = Estimator::from_bytes(&flipped).unwrap_err();
         let expected = match bit / 8 {
             0..8 => matches!(error, Error::ForeignFile { .. }),
-            8..12 => matches!(error, Error::FileVersion { known: 10, .. }),
+            8..12 => matches!(error, Error::FileVersion { known: 11, .. }),
             12..20 => matches!(error, Error::FileLength { .. }),
             _ => matches!(error, Error::FileChecksum { .. }),
         };
