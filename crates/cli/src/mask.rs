@@ -1,11 +1,16 @@
-//! Masks that are given, told from photographs that are given as masks.
+//! Masks told from photographs, whichever they are given as.
 
 use anyhow::{Result, ensure};
-use image::DynamicImage;
+use image::{DynamicImage, Rgb, RgbImage};
 use phalanx::{mask_from, photograph_from};
 use phalanx_segmentation::Mask;
 
-use crate::segment::{GREY, OFF_BLACK_AND_WHITE, is_grey};
+/// The greatest difference between the channels of a pixel without colour, levels: what a JPEG file's
+/// rounding makes of a grey one.
+pub(crate) const GREY: u8 = 8;
+
+/// How far the black and white of masks are off after a lossy encoding, levels.
+pub(crate) const OFF_BLACK_AND_WHITE: u8 = 24;
 
 /// A level of a mask is that of all pixels but one of so many of those that are hand, or of the others. JPEG makes it one
 /// of 5 at worst; of a hand in drawn photographs it is two of 3, as of all in real ones.
@@ -31,6 +36,28 @@ pub(crate) fn given_mask(picture: &DynamicImage) -> Result<Mask> {
         100.0 * shades as f64 / levels.all() as f64
     );
     Ok(mask)
+}
+
+/// Whether a picture has black and white and little else, each to within so many levels: videos and JPEG
+/// files of masks are blurred where black meets white.
+pub(crate) fn is_like_a_mask(photograph: &RgbImage, off: u8) -> bool {
+    let grey = if off == 0 { 0 } else { GREY };
+    let (mut black, mut white) = (0_usize, 0_usize);
+    for pixel in photograph.pixels() {
+        if !is_grey(*pixel, grey) {
+            return false;
+        }
+        black += usize::from(pixel.0[0] <= off);
+        white += usize::from(pixel.0[0] >= 255 - off);
+    }
+    let others = photograph.pixels().len() - black - white;
+    let most = if off == 0 { 0 } else { photograph.pixels().len() / 10 };
+    black > 0 && white > 0 && others <= most
+}
+
+/// Whether the channels of a pixel differ by no more than so many levels.
+pub(crate) fn is_grey(Rgb([red, green, blue]): Rgb<u8>, most: u8) -> bool {
+    red.max(green).max(blue) - red.min(green).min(blue) <= most
 }
 
 /// How many pixels have each level.
@@ -94,7 +121,7 @@ fn is_shade(level: u8) -> bool {
 mod tests {
     use std::io::Cursor;
 
-    use image::{ImageFormat, Rgb, RgbImage, Rgba, RgbaImage, imageops};
+    use image::{ImageFormat, Rgba, RgbaImage, imageops};
 
     use super::*;
 

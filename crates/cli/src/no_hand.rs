@@ -4,7 +4,8 @@ use image::RgbImage;
 use phalanx::{Cause, Error, Estimator, LossReason, Segmenter};
 use phalanx_segmentation::Error as Reason;
 
-use crate::segment::{GREY, Prepared, is_grey};
+use crate::mask::{GREY, is_grey};
+use crate::segment::Prepared;
 
 /// The error of an estimate from pictures. Where no hand was found, it says what the picture is like.
 pub(crate) fn explained(

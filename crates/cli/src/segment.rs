@@ -4,19 +4,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use image::{DynamicImage, Rgb, RgbImage};
+use image::{DynamicImage, RgbImage};
 use phalanx::{Picture, Segment, Segmentation, Segmenter, photograph_from};
 use phalanx_cli::reading;
 use phalanx_segmentation::{Mask, PlainBackground, SkinModel};
 
-use crate::mask::given_mask;
-
-/// The greatest difference between the channels of a pixel without colour, levels: what a JPEG file's
-/// rounding makes of a grey one.
-pub(crate) const GREY: u8 = 8;
-
-/// How far the black and white of masks are off after a lossy encoding, levels.
-pub(crate) const OFF_BLACK_AND_WHITE: u8 = 24;
+use crate::mask::{OFF_BLACK_AND_WHITE, given_mask, is_like_a_mask};
 
 #[derive(Args, Clone, Default)]
 pub(crate) struct SegmentArguments {
@@ -121,28 +114,6 @@ fn photograph(picture: &DynamicImage, segmenter: &Segmenter) -> Result<RgbImage>
         "it is black and white, as masks are: for masks, give --mask"
     );
     Ok(photograph)
-}
-
-/// Whether a picture has black and white and little else, each to within so many levels: videos and JPEG
-/// files of masks are blurred where black meets white.
-fn is_like_a_mask(photograph: &RgbImage, off: u8) -> bool {
-    let grey = if off == 0 { 0 } else { GREY };
-    let (mut black, mut white) = (0_usize, 0_usize);
-    for pixel in photograph.pixels() {
-        if !is_grey(*pixel, grey) {
-            return false;
-        }
-        black += usize::from(pixel.0[0] <= off);
-        white += usize::from(pixel.0[0] >= 255 - off);
-    }
-    let others = photograph.pixels().len() - black - white;
-    let most = if off == 0 { 0 } else { photograph.pixels().len() / 10 };
-    black > 0 && white > 0 && others <= most
-}
-
-/// Whether the channels of a pixel differ by no more than so many levels.
-pub(crate) fn is_grey(Rgb([red, green, blue]): Rgb<u8>, most: u8) -> bool {
-    red.max(green).max(blue) - red.min(green).min(blue) <= most
 }
 
 impl Prepared<'_> {

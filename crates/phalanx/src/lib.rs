@@ -4,6 +4,7 @@ mod checking;
 mod error;
 mod estimator;
 mod features;
+mod fit_chances;
 mod fitting;
 mod images;
 mod localize;

@@ -18,8 +18,8 @@ use crate::estimator::observation::Observation;
 use crate::estimator::placement::PLACED;
 use crate::estimator::refined_errors::RefinedDeviations;
 use crate::features::describer::working_camera;
+use crate::fit_chances;
 use crate::images::picture::Picture;
-use crate::restarts;
 use crate::synthesis::postures;
 use crate::window::Framing;
 
@@ -230,7 +230,7 @@ impl Refiner {
         let prior = self.prior(&estimate.pose, &estimate.std)?;
         let hand = (&self.hand, &self.rest);
         let of_digits = self.refinement.posture_variance(hand, evidence, fit, &prior)?;
-        let of_others = restarts::variance_by_others(fit, others);
+        let of_others = fit_chances::variance_by_others(fit, others);
         let mut curvature = [None; Dof::COUNT];
         let diagonal = fit.covariance.iter().step_by(prior.dofs().len() + 1);
         for (dof, variance) in prior.dofs().iter().zip(diagonal) {

@@ -6,15 +6,12 @@ use phalanx_refine::{PoseFit, PoseFitSettings, SilhouetteObservation};
 use crate::error::Result;
 use crate::estimator::estimate::Estimate;
 use crate::estimator::hypotheses::Hypothesis;
+use crate::fit_chances;
 use crate::refiner::Refiner;
 
 /// Least spread of a hypothesis in refinement, as a share of the estimate's standard deviation: a
 /// hypothesis that few errors stand behind is not thereby certain.
 const LEAST_SPREAD: f64 = 0.25;
-
-/// How many times too much an energy says of how likely a pose is: places of a border that are beside
-/// each other err together.
-const OVERSTATED: f64 = 3.0;
 
 impl Refiner {
     /// Poses that are named at most where several are possible.
@@ -67,7 +64,7 @@ impl Refiner {
 /// The numbers of those refined poses that stand for all, the one that does so best first.
 fn representatives(refined: &[PoseFit]) -> Vec<usize> {
     let least = refined.iter().map(|refined| refined.energy).fold(f64::INFINITY, f64::min);
-    let chance = |refined: &PoseFit| ((least - refined.energy) / OVERSTATED).exp();
+    let chance = |refined: &PoseFit| fit_chances::chance(refined.energy - least);
     let mut apart = vec![f64::INFINITY; refined.len()];
     let mut chosen = Vec::new();
     while chosen.len() < Refiner::POSES.min(refined.len()) {
@@ -87,57 +84,8 @@ fn representatives(refined: &[PoseFit]) -> Vec<usize> {
     chosen
 }
 
-/// The mean squared distance of each number from a fit's, over that and some other fits, weighted by how well each
-/// explains the silhouettes.
-pub(crate) fn variance_by_others(best: &PoseFit, others: &[PoseFit]) -> [f64; Dof::COUNT] {
-    let chance = |other: &PoseFit| ((best.energy - other.energy).min(0.0) / OVERSTATED).exp();
-    let chances: Vec<f64> = others.iter().map(chance).collect();
-    let all = 1.0 + chances.iter().sum::<f64>();
-    Dof::ALL.map(|dof| {
-        let apart = others.iter().map(|other| (other.pose[dof] - best.pose[dof]).powi(2));
-        apart.zip(&chances).map(|(apart, chance)| chance * apart).sum::<f64>() / all
-    })
-}
-
 /// Sum of the differences of two poses' angles, radians.
 fn difference(one: &Pose, other: &Pose) -> f64 {
     let angles = Dof::ALL.into_iter().filter(|dof| dof.unit() == Unit::Angle);
     angles.map(|dof| (one[dof] - other[dof]).abs()).sum()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn fit(angle: f64, energy: f64) -> PoseFit {
-        let mut pose = Pose::REST;
-        pose[Dof::IndexPip] = angle;
-        PoseFit {
-            pose,
-            energy,
-            covariance: Vec::new(),
-            ious: Vec::new(),
-            unexplained: Vec::new(),
-            landmarks_unexplained: Vec::new(),
-            boundary_rms_px: 0.0,
-            nuisance: None,
-            converged: true,
-            steps: 0,
-        }
-    }
-
-    /// One that explains as much counts half, and so does one that explains more, since the first is the one to be
-    /// believed; what explains much less does not count.
-    #[test]
-    fn other_fits_count_as_they_explain() {
-        let best = fit(0.2, 10.0);
-        for (energy, least, most) in [(10.0, 0.499, 0.501), (2.0, 0.499, 0.501), (80.0, 0.0, 1e-9)]
-        {
-            let variances = variance_by_others(&best, &[fit(1.2, energy)]);
-            let variance = variances[Dof::IndexPip.index()];
-            assert!((least..=most).contains(&variance), "{energy}: {variance}");
-            assert_eq!(variances[Dof::RingPip.index()], 0.0);
-        }
-        assert_eq!(variance_by_others(&best, &[]), [0.0; Dof::COUNT]);
-    }
 }

@@ -46,9 +46,7 @@ fn seen(rig: &Rig, recording: &RecordingArguments) -> Result<Vec<Finding>> {
     }));
     if failures.is_empty() && cameras > 1 {
         let fit = fit_take(&source.cameras, &frames, &TakeSettings::default(), &NoProgress)?;
-        let views = source.cameras.iter().enumerate();
-        findings
-            .extend(views.map(|(view, camera)| agreement(camera, view, &fit, source.are_masks())));
+        findings.extend((0..cameras).map(|view| agreement(&source, view, &fit)));
     }
     Ok(findings)
 }

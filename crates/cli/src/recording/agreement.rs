@@ -5,6 +5,7 @@ use phalanx_camera::Camera;
 
 use crate::counts::counted;
 use crate::finding::Finding;
+use crate::recording::source::Source;
 
 /// How a finding calls a camera.
 pub(crate) fn named(camera: &Camera) -> String {
@@ -13,18 +14,14 @@ pub(crate) fn named(camera: &Camera) -> String {
 
 /// Whether what a camera shows meets what the others show in space. One that contradicts them at most moments
 /// does not stand where the calibration has it, or its frames are of other moments.
-pub(crate) fn agreement(camera: &Camera, view: usize, fit: &TakeFit, are_masks: bool) -> Finding {
-    let look = if are_masks {
-        "look at the masks: the hand and its arm are white, all else is black"
-    } else {
-        "look at the light, or give masks"
-    };
+pub(crate) fn agreement(source: &Source, view: usize, fit: &TakeFit) -> Finding {
+    let look = source.advice();
     let views = || fit.frames.iter().map(|frame| frame.views[view]);
     let all = fit.frames.len();
     let moments = counted(all, "moment");
     let count = |reason| views().filter(|view| view.missing == Some(reason)).count();
     let (absent, contradicts) = (count(Missing::NoHand), count(Missing::Disagrees));
-    let what = named(camera);
+    let what = named(&source.cameras[view]);
     if 2 * contradicts > all {
         let text = format!(
             "it contradicts the other cameras at {contradicts} of {moments}: it was moved after the \

@@ -92,9 +92,14 @@ impl Source {
         both.filter_map(|(camera, path)| Some((camera, path.as_ref()?)))
     }
 
-    /// Whether the pictures are masks.
-    pub(crate) fn are_masks(&self) -> bool {
-        matches!(self.pictures, Pictures::Masks)
+    /// What to do where its pictures show no hand.
+    pub(crate) fn advice(&self) -> &'static str {
+        match self.pictures {
+            Pictures::Masks => {
+                "look at the masks: the hand and its arm are white, all else is black"
+            }
+            _ => "look at the light, or give masks",
+        }
     }
 
     /// The files and folders of landmarks.

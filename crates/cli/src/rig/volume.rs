@@ -100,10 +100,9 @@ pub(super) fn seen(source: &Source, side: Side) -> Result<VolumeEstimate> {
     let settings = TakeSettings { hand, ..TakeSettings::default() };
     let fit = fit_take(&source.cameras, &frames, &settings, &Bar::new())?;
     if source.cameras.len() > 1 {
-        let views = source.cameras.iter().enumerate();
-        let findings =
-            views.map(|(view, camera)| agreement(camera, view, &fit, source.are_masks()));
-        for Finding { what, text, .. } in findings.filter(|finding| finding.state != State::Good) {
+        let findings = (0..source.cameras.len()).map(|view| agreement(source, view, &fit));
+        let findings = findings.filter(|finding| finding.state != State::Good);
+        for Finding { what, text, .. } in findings {
             eprintln!("doubt: {what}: {text}");
         }
     }
