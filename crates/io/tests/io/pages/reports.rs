@@ -63,7 +63,6 @@ fn one_frame_has_no_range() {
     assert!(angle[0].is_some() && angle[1].is_some() && angle[2].is_none(), "{angle:?}");
     assert!(total[2].is_none(), "{total:?}");
     assert_eq!(table.notes, ["still: 1 of 1 frames counts, which has no range"]);
-    assert!(!to_text(&table).contains("0.0 ±"));
 }
 
 #[test]
