@@ -98,7 +98,7 @@ impl Source {
             Pictures::Masks => {
                 "look at the masks: the hand and its arm are white, all else is black"
             }
-            _ => "look at the light, or give masks",
+            Pictures::Photographs(_) => "look at the light, or give masks",
         }
     }
 
