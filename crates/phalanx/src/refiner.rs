@@ -228,8 +228,8 @@ impl Refiner {
         (fit, others): (&PoseFit, &[PoseFit]),
     ) -> Result<RefinedDeviations> {
         let prior = self.prior(&estimate.pose, &estimate.std)?;
-        let hand = (&self.hand, &self.rest);
-        let of_digits = self.refinement.posture_variance(hand, evidence, fit, &prior)?;
+        let of_digits =
+            self.refinement.posture_variance(&self.hand, &self.rest, evidence, fit, &prior)?;
         let of_others = fit_chances::variance_by_others(fit, others);
         let mut curvature = [None; Dof::COUNT];
         let diagonal = fit.covariance.iter().step_by(prior.dofs().len() + 1);

@@ -275,7 +275,7 @@ fn fewer_views_leave_more_postures_open() {
     let open_deg = |evidence: &[SilhouetteObservation]| {
         let settings = PoseFitSettings::default();
         let fit = settings.fit(&hand, &rest, evidence, &truth, &vague).unwrap();
-        let variances = settings.posture_variance((&hand, &rest), evidence, &fit, &vague).unwrap();
+        let variances = settings.posture_variance(&hand, &rest, evidence, &fit, &vague).unwrap();
         assert!(variances[20..].iter().all(|variance| *variance == 0.0));
         (variances[..20].iter().sum::<f64>() / 20.0).sqrt().to_degrees()
     };

@@ -27,7 +27,8 @@ impl PoseFitSettings {
     /// As of [`fit`](Self::fit).
     pub fn posture_variance(
         &self,
-        (hand, rest): (&HandShape, &DAffine3),
+        hand: &HandShape,
+        rest: &DAffine3,
         evidence: &[SilhouetteObservation],
         fit: &PoseFit,
         prior: &PosePrior,
