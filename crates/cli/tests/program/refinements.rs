@@ -62,7 +62,7 @@ fn too_few_frames_are_refused_and_nothing_is_written() {
     let refused = run(desk.folder(), arguments.iter().chain(&["--out", "me.toml"]));
     assert_eq!(refused.code, Some(2));
     assert!(refused.err.contains("frame 1.png is left out"), "{}", refused.err);
-    assert!(refused.err.contains("1 frames can be used; at least 3"), "{}", refused.err);
+    assert!(refused.err.contains("1 frame can be used; at least 3"), "{}", refused.err);
     assert!(!desk.path("me.toml").exists());
 }
 
