@@ -108,7 +108,7 @@ impl PoseFitSettings {
         let mut best = self.restart(&problem, best, &mut views)?;
         let stays = best.energy > (1.0 - WORTH_LEAVING) * given.energy;
         if stays {
-            best = Outcome { converged: best.converged, steps: best.steps, ..given.clone() };
+            best = Outcome { steps: best.steps, ..given.clone() };
         }
         let misses = best.boundary_rms_px(self.noise);
         if let Some(nuisance) = self.nuisance.filter(|nuisance| misses > nuisance.above_rms_px) {
