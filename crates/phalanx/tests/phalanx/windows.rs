@@ -1,12 +1,14 @@
 //! Windows on the hand: where they look, that training and use see the same through them, and that
 //! shift and scale of the picture make no difference.
 
+use std::sync::LazyLock;
+
 use glam::{DVec2, DVec3};
 use image::Luma;
 use phalanx::{
-    Augmentation, Describer, FixedPoses, Framing, MaskNoise, OrientationRule, Picture,
-    PicturedHand, Refiner, Scene, SceneDescriber, Training, ViewConfig, Window, WindowFinder,
-    Workspace, initial_global,
+    Augmentation, Describer, Estimator, FixedPoses, Framing, MaskNoise, NoProgress,
+    OrientationRule, Picture, PicturedHand, Refiner, Scene, SceneDescriber, Training, ViewConfig,
+    Window, WindowFinder, Workspace, initial_global,
 };
 use phalanx_camera::{Camera, Distortion, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, Pose};
@@ -55,6 +57,12 @@ fn training(framing: Framing) -> Training {
     vocabulary.clustering.restarts = 1;
     Training { framing, vocabulary, ..Training::default() }
 }
+
+/// Learnt from those poses through windows.
+static ESTIMATOR: LazyLock<Estimator> = LazyLock::new(|| {
+    let training = training(Framing::Window);
+    training.run(&rig(), &HandShape::adult(), &poses(), &NoProgress).unwrap()
+});
 
 /// The mask of a posed hand as a camera of any size sees it.
 fn mask(camera: &Camera, pose: &Pose) -> Mask {
@@ -128,10 +136,8 @@ fn window_and_picture_show_the_same_points() {
 #[test]
 fn training_and_use_see_the_same() {
     let (rig, hand) = (rig(), HandShape::adult());
-    let estimator =
-        training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
-    let read = phalanx::Estimator::from_bytes(&estimator.to_bytes().unwrap()).unwrap();
-    assert_eq!(read, estimator);
+    let read = Estimator::from_bytes(&ESTIMATOR.to_bytes().unwrap()).unwrap();
+    assert_eq!(read, *ESTIMATOR);
     assert_eq!(read.descriptor().view_config(), THROUGH_WINDOWS);
     let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
     let (mut workspace, mut worst) = (Workspace::default(), 0.0_f64);
@@ -140,7 +146,7 @@ fn training_and_use_see_the_same() {
         let masks = describer.masks(&scene).unwrap().to_vec();
         let trained_on: Vec<Silhouette> = describer.silhouettes(&scene).unwrap().cloned().collect();
         let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
-        let estimate = estimator.estimate(&pictures, &mut workspace).unwrap();
+        let estimate = ESTIMATOR.estimate(&pictures, &mut workspace).unwrap();
         for (used, trained_on) in estimate.observation.silhouettes().zip(&trained_on) {
             // It was found in a smaller picture.
             assert!(used.mask.iou(&trained_on.mask) > 0.9);
@@ -197,9 +203,7 @@ fn a_window_is_drawn_as_the_picture_shows_it() {
 #[test]
 fn hands_are_placed_and_refined_where_they_are() {
     let (rig, hand) = (rig(), HandShape::adult());
-    let estimator =
-        training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
-    let refiner = Refiner::for_estimator(&estimator, PoseFitSettings::default()).unwrap();
+    let refiner = Refiner::for_estimator(&ESTIMATOR, PoseFitSettings::default()).unwrap();
     let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
     let mut workspace = Workspace::default();
     for (k, mut pose) in unseen().into_iter().enumerate() {
@@ -209,7 +213,7 @@ fn hands_are_placed_and_refined_where_they_are() {
         pose[Dof::ThetaX] = [-0.2, 0.0, 0.2][k % 3];
         let masks = describer.masks(&Scene::nominal(&rig, &hand, pose)).unwrap().to_vec();
         let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
-        let estimate = estimator.estimate(&pictures, &mut workspace).unwrap();
+        let estimate = ESTIMATOR.estimate(&pictures, &mut workspace).unwrap();
         let off = |pose: &Pose, truth: &Pose| pose.translation().distance(truth.translation());
         assert!(off(&estimate.pose, &pose) < 40.0, "{} mm", off(&estimate.pose, &pose));
         let evidence = refiner.evidence_of(&estimate.observation).unwrap();
@@ -223,8 +227,6 @@ fn hands_are_placed_and_refined_where_they_are() {
 #[test]
 fn the_size_of_the_pictures_makes_no_difference() {
     let (rig, hand) = (rig(), HandShape::adult());
-    let estimator =
-        training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
     let mut workspace = Workspace::default();
     let mut pose = unseen()[1];
     [pose[Dof::TX], pose[Dof::TY], pose[Dof::TZ]] = [-20.0, 10.0, 15.0];
@@ -241,7 +243,7 @@ fn the_size_of_the_pictures_makes_no_difference() {
             })
             .collect();
         let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
-        estimator.estimate(&pictures, &mut workspace).unwrap().pose
+        ESTIMATOR.estimate(&pictures, &mut workspace).unwrap().pose
     };
     let usual = estimate_at(1.0);
     for size in [1.5, 2.7, 4.0] {
@@ -312,11 +314,9 @@ fn what_is_beyond_the_picture_is_not_known() {
 #[test]
 fn hypotheses_are_where_the_windows_show_the_hand() {
     let (rig, hand) = (rig(), HandShape::adult());
-    let estimator =
-        training(Framing::Window).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
     let poses = poses();
     let scenes = FixedPoses { rig: &rig, hand: &hand, poses: &poses };
-    let estimator = estimator.fit_error_model(&scenes, &phalanx::NoProgress).unwrap();
+    let estimator = ESTIMATOR.clone().fit_error_model(&scenes, &NoProgress).unwrap();
     let mut describer = SceneDescriber::new(&rig, THROUGH_WINDOWS).unwrap();
     let mut pose = closing(0.4, 20.0);
     pose[Dof::TY] = 20.0;
@@ -337,8 +337,7 @@ fn hypotheses_are_where_the_windows_show_the_hand() {
 fn whole_pictures_have_no_windows() {
     let (rig, hand) = (rig(), HandShape::adult());
     let mut workspace = Workspace::default();
-    let estimator =
-        training(Framing::Picture).run(&rig, &hand, &poses(), &phalanx::NoProgress).unwrap();
+    let estimator = training(Framing::Picture).run(&rig, &hand, &poses(), &NoProgress).unwrap();
     let masks: Vec<Mask> =
         rig.cameras.iter().map(|camera| mask(camera, &closing(0.5, 10.0))).collect();
     let pictures: Vec<Picture<'_>> = masks.iter().map(Picture::Mask).collect();
