@@ -1,7 +1,9 @@
 //! Drawn takes, of which it is known where every joint is.
 
+use std::sync::LazyLock;
+
 use glam::{DAffine3, DVec3};
-use phalanx::{ItemRng, TakeFrame};
+use phalanx::{ItemRng, NoProgress, TakeFit, TakeFrame, TakeSettings, fit_take};
 use phalanx_camera::{Camera, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
 use phalanx_render::Renderer;
@@ -47,6 +49,13 @@ fn pose(frame: usize) -> Pose {
 pub(crate) fn drawn(count: usize) -> Drawn {
     drawn_of(&hand(), count)
 }
+
+/// Six frames, and what is fitted to them.
+pub(crate) static FITTED: LazyLock<(Drawn, TakeFit)> = LazyLock::new(|| {
+    let take = drawn(6);
+    let fit = fit_take(&take.cameras, &take.frames, &TakeSettings::default(), &NoProgress);
+    (take, fit.expect("a fit"))
+});
 
 /// The same of another hand.
 pub(crate) fn drawn_of(hand: &HandShape, count: usize) -> Drawn {

@@ -8,7 +8,7 @@ use phalanx::{
 use phalanx_camera::Camera;
 use phalanx_hand::{JOINTS, Landmark, Landmarks};
 
-use crate::drawn::{Drawn, drawn, mean_error};
+use crate::drawn::{Drawn, FITTED, drawn, mean_error};
 
 /// What a detector's points are off by, px: some 4 mm.
 const STD: f64 = 1.5;
@@ -74,7 +74,7 @@ fn landmarks_make_masks_no_worse_and_fit_a_take_alone() {
     let fit = |frames: &[TakeFrame]| {
         fit_take(&cameras, frames, &TakeSettings::default(), &NoProgress).expect("a fit")
     };
-    let masks = errors(&fit(&without_landmarks(&frames)).frames, &joints);
+    let masks = errors(&FITTED.1.frames, &joints);
     let both = fit(&frames);
     let of_both = errors(&both.frames, &joints);
     // Masks as exact as drawn ones leave nothing to tell.

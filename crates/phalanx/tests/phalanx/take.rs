@@ -11,16 +11,14 @@ use phalanx_hand::{Dof, HandShape, Pose, Side};
 use phalanx_segmentation::Mask;
 
 use crate::drawn::{
-    Drawn, cameras, drawn, drawn_coming, drawn_of, drawn_turning, hand, mean_error,
+    Drawn, FITTED, cameras, drawn, drawn_coming, drawn_of, drawn_turning, hand, mean_error,
 };
 
 #[test]
 fn a_take_is_fitted_from_masks_alone() {
-    let Drawn { cameras, frames, joints } = drawn(6);
-    let settings = TakeSettings::default();
-    let fit = fit_take(&cameras, &frames, &settings, &NoProgress).expect("a fit");
+    let (Drawn { cameras, frames, joints }, fit) = &*FITTED;
     let errors: Vec<f64> =
-        fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
+        fit.frames.iter().zip(joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
     let mean = errors.iter().sum::<f64>() / errors.len() as f64;
     assert!(mean < 6.0, "{errors:.1?}");
     for fit in &fit.frames {
@@ -30,7 +28,7 @@ fn a_take_is_fitted_from_masks_alone() {
     // Wherever it was thought to be, the arm is along +z and the hand near the world's origin.
     assert!(fit.volume.volume.forearm.normalize().z > 0.95, "{:?}", fit.volume);
     assert!(fit.volume.volume.center.distance(DVec3::new(18.0, 0.0, -10.0)) < 25.0);
-    let alone = fit_frame(&cameras, &frames[3], &fit).expect("a fit");
+    let alone = fit_frame(cameras, &frames[3], fit).expect("a fit");
     assert!(mean_error(&alone.joints, &joints[3]) < 8.0, "a frame alone");
 }
 
@@ -159,8 +157,7 @@ fn mirrored(camera: &Camera) -> Camera {
 
 #[test]
 fn a_left_hand_is_fitted_as_a_right_one_in_a_mirror() {
-    let Drawn { cameras, frames, .. } = drawn(4);
-    let right = fit_take(&cameras, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
+    let (Drawn { cameras, frames, .. }, right) = &*FITTED;
     let cameras: Vec<Camera> = cameras.iter().map(mirrored).collect();
     let flip = |mask: &Mask| image::imageops::flip_horizontal(&**mask).into();
     let flipped = |mask: &Option<Mask>| mask.as_ref().map(flip);
