@@ -5,8 +5,8 @@ use std::sync::LazyLock;
 
 use image::imageops;
 use phalanx::{
-    Augmentation, Cause, Estimate, Estimator, Mask, NoProgress, OrientationRule, Picture, Preset,
-    Refiner, SceneDescriber, SceneSampler, SceneSource, Trainer, ViewDoubt, Workspace,
+    Augmentation, Cameras, Cause, Estimate, Estimator, Mask, NoProgress, OrientationRule, Picture,
+    Preset, Refiner, SceneDescriber, SceneSampler, SceneSource, Trainer, ViewDoubt, Workspace,
 };
 use phalanx_camera::Rig;
 use phalanx_hand::{HandShape, Side};
@@ -20,7 +20,9 @@ fn rig() -> Rig {
 }
 
 static ESTIMATOR: LazyLock<Estimator> = LazyLock::new(|| {
-    let trainer = Trainer::preset(Preset::Fast).samples(2000).error_samples(600);
+    // None is missing here: `estimator::subsets` asks what is said of some.
+    let trainer = Trainer::preset(Preset::Fast).answers_from(Cameras::All);
+    let trainer = trainer.samples(2000).error_samples(600);
     trainer.fit(&rig(), &HandShape::adult(), &NoProgress).unwrap()
 });
 
