@@ -51,11 +51,13 @@ impl Trainer {
     /// Scenes that the error model is fitted to.
     pub const ERROR_SAMPLES: usize = 4000;
 
-    /// Scenes of strangers and of the hand as given that are refined at most to learn how refined estimates err.
-    const REFINED_SAMPLES: usize = 160;
-
-    /// For so many scenes that are learnt from one is refined, which takes as long as to learn from some 25.
+    /// For so many scenes that are learnt from one is refined, of strangers or of the hand as given, to learn how
+    /// refined estimates err. It takes as long as to learn from some 25.
     const PER_REFINED: usize = 80;
+
+    /// There are at least so many that the error model is fitted to for one that is refined: 160 are refined at most,
+    /// unless it is fitted to more than [`ERROR_SAMPLES`](Self::ERROR_SAMPLES).
+    const ERROR_SAMPLES_PER_REFINED: usize = 25;
 
     /// As a preset says: whole pictures, random poses with every [`Augmentation`], an error model.
     pub fn preset(preset: Preset) -> Self {
@@ -97,7 +99,7 @@ impl Trainer {
     }
 
     /// How many further scenes the error model is fitted to; 0 for none, and then the estimator has no
-    /// hypotheses.
+    /// hypotheses. The fewer they are, the fewer scenes are refined to learn how refined estimates err.
     #[must_use]
     pub fn error_samples(mut self, samples: usize) -> Self {
         self.error_samples = samples;
@@ -146,7 +148,8 @@ impl Trainer {
 
     /// How many scenes are refined.
     fn refined_samples(&self) -> usize {
-        (self.samples / Self::PER_REFINED).min(Self::REFINED_SAMPLES)
+        let most = self.error_samples / Self::ERROR_SAMPLES_PER_REFINED;
+        (self.samples / Self::PER_REFINED).min(most)
     }
 
     /// What training through so many views takes in one run.
