@@ -43,6 +43,18 @@ static MODEL: LazyLock<Vec<u8>> = LazyLock::new(|| {
     estimator.and_then(|estimator: Estimator| estimator.to_bytes()).unwrap()
 });
 
+/// What `phalanx demo --json --out demo` does in an empty folder, and that folder. It tracks sixty moments, so it is run
+/// once for all.
+pub(crate) static DEMO: LazyLock<(PathBuf, Outcome)> = LazyLock::new(|| {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("demo");
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+    std::fs::create_dir_all(&folder).unwrap();
+    let outcome = run(&folder, ["demo", "--json", "--out", "demo"]);
+    (folder, outcome)
+});
+
 /// A temporary folder with `model`, and for each camera `<camera>-mask.png` (the mask) and
 /// `<camera>.png` (a photograph, 320×240) of the hand half closed.
 pub(crate) struct Desk {
@@ -128,6 +140,19 @@ impl Desk {
             std::fs::create_dir_all(&folder).unwrap();
             let mask = draw_silhouette(&camera, &HandShape::adult(), &closing(closed), &rest);
             mask.unwrap().save(folder.join(name)).unwrap();
+        }
+    }
+
+    /// Copies the first eight moments of the demo's recording into `eight`.
+    pub(crate) fn copy_eight_moments(&self) {
+        let recording = DEMO.0.join("demo/recording");
+        for camera in ["side", "top", "other_side"] {
+            let folder = self.path("eight").join(camera);
+            std::fs::create_dir_all(&folder).unwrap();
+            for moment in 0..8 {
+                let name = format!("{moment:03}.png");
+                std::fs::copy(recording.join(camera).join(&name), folder.join(name)).unwrap();
+            }
         }
     }
 

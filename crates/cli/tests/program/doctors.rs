@@ -7,7 +7,7 @@ use phalanx_camera::{Intrinsics, Rig};
 use phalanx_hand::HandShape;
 use serde_json::Value;
 
-use crate::desk::{Desk, Outcome, closing, run};
+use crate::desk::{DEMO, Desk, Outcome, closing, run};
 
 fn doctor(desk: &Desk, arguments: &[&str]) -> (Option<i32>, Value) {
     let outcome = run(desk.folder(), ["doctor", "--json"].iter().chain(arguments));
@@ -132,16 +132,16 @@ fn a_view_that_would_be_doubted_is_doubted() {
 #[test]
 fn a_camera_that_contradicts_the_others_is_named() {
     let desk = Desk::new();
-    let demo = run(desk.folder(), ["demo", "--json"]);
-    assert_eq!(demo.code, Some(0), "{}", demo.err);
-    let rig = String::from_utf8(desk.read("phalanx-demo/rig.toml")).unwrap();
+    let demo = DEMO.0.join("demo");
+    let rig = std::fs::read_to_string(demo.join("rig.toml")).unwrap();
     let mut moved = Rig::from_toml(&rig).unwrap();
     let turn = glam::DMat3::from_rotation_y(0.12);
     let camera = &mut moved.cameras[1].extrinsics;
     (camera.rotation, camera.translation) = (turn * camera.rotation, turn * camera.translation);
     desk.write("moved.toml", moved.to_toml().unwrap().as_bytes());
-    let (code, report) =
-        doctor(&desk, &["--rig", "moved.toml", "phalanx-demo/recording", "--mask"]);
+    let recording = demo.join("recording");
+    let arguments = ["--rig", "moved.toml", recording.to_str().unwrap(), "--mask"];
+    let (code, report) = doctor(&desk, &arguments);
     assert_eq!(code, Some(2), "{report:#}");
     let good = in_state(&report, "good").join("\n");
     assert!(good.contains("60 moments by 3 cameras; 12 of them, drawn from all, are"), "{good}");
@@ -154,8 +154,8 @@ fn a_camera_that_contradicts_the_others_is_named() {
     let [one, other] = [0, 2].map(|camera| exchanged.cameras[camera].name.clone());
     (exchanged.cameras[0].name, exchanged.cameras[2].name) = (other, one);
     desk.write("exchanged.toml", exchanged.to_toml().unwrap().as_bytes());
-    let check = ["rig", "check", "exchanged.toml", "phalanx-demo/recording", "--mask"];
-    let outcome = run(desk.folder(), check);
+    desk.copy_eight_moments();
+    let outcome = run(desk.folder(), ["rig", "check", "exchanged.toml", "eight", "--mask"]);
     assert_eq!(outcome.code, Some(0), "{}", outcome.err);
     assert!(outcome.err.contains("doubt: camera '"), "{}", outcome.err);
 }

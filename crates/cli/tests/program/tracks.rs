@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::desk::{CAMERAS, Desk, Outcome, run};
+use crate::desk::{CAMERAS, DEMO, Desk, Outcome, run};
 use phalanx_io::take::{Take, read_csv};
 
 /// How far the hand is closed in a frame.
@@ -175,15 +175,16 @@ fn encode(folder: &Path, video: &Path) {
 
 #[test]
 fn the_demo_goes_to_a_new_folder_and_to_no_other() {
-    let folder = tempfile::tempdir().unwrap();
-    let outcome = run(folder.path(), ["demo", "--out", "demo"]);
+    let (folder, outcome) = &*DEMO;
     assert_eq!(outcome.code, Some(0), "{outcome:?}");
-    let demo = folder.path().join("demo");
+    let said: serde_json::Value = serde_json::from_str(&outcome.out).unwrap();
+    assert_eq!((&said["folder"], &said["frames"]), (&"demo".into(), &60.into()));
+    let demo = folder.join("demo");
     let whole = read_csv(std::fs::File::open(demo.join("take.csv")).unwrap()).unwrap();
     assert_eq!(whole.frames.len(), 60);
     assert!(whole.frames.iter().all(phalanx_io::take::TakeFrame::is_trusted));
     assert!(demo.join("sheet.png").is_file() && demo.join("rig.toml").is_file());
-    let again = run(folder.path(), ["demo", "--out", "demo"]);
+    let again = run(folder, ["demo", "--out", "demo"]);
     assert_eq!(again.code, Some(2), "{again:?}");
     assert!(again.err.contains("not empty"), "{again:?}");
 }
@@ -236,11 +237,10 @@ fn a_recording_of_other_moments_or_cameras_is_told() {
     assert!(outcome.err.contains("its first is 'image0', another's '0000'"), "{outcome:?}");
 
     // Two of three cameras exchanged.
-    assert_eq!(run(desk.folder(), ["demo", "--out", "demo"]).code, Some(0));
-    let exchanged = ["side", "top", "other_side"].into_iter().zip(["top", "side", "other_side"]);
-    let given: Vec<String> =
-        exchanged.map(|(camera, shown)| format!("{camera}=demo/recording/{shown}")).collect();
-    let rest = ["track", "--rig", "demo/rig.toml", "--mask", "--out", "t.csv"].map(str::to_owned);
+    desk.copy_eight_moments();
+    std::fs::copy(DEMO.0.join("demo/rig.toml"), desk.path("three.toml")).unwrap();
+    let given = ["side=eight/other_side", "top=eight/top", "other_side=eight/side"];
+    let rest = ["track", "--rig", "three.toml", "--mask", "--out", "t.csv"];
     let outcome = run(desk.folder(), rest.iter().chain(&given));
     assert!(outcome.err.contains("was it moved or exchanged with another"), "{outcome:?}");
 }
