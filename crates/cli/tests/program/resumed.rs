@@ -146,7 +146,7 @@ fn durations(desk: &Desk, out: &str) -> [Duration; 2] {
 #[ignore = "kills a run twenty times"]
 fn a_run_that_is_killed_at_any_instant_goes_on_to_the_same_bytes() {
     const KILLS: usize = 20;
-    let desk = recorded(2 * KILLS);
+    let desk = recorded(KILLS);
     let [fitted, ended] = durations(&desk, "whole.csv");
     let mut random = ItemRng::new(24, 0);
     let mut broken = [0, 0];
