@@ -15,7 +15,7 @@ use crate::installed::run;
 pub(crate) const TRAINING: [&str; 6] =
     ["--preset", "fast", "--samples", "3100", "--cameras", "top"];
 pub(crate) const TRACKING: [&str; 3] = ["--rig", "rig.toml", "--mask"];
-pub(crate) const RECORDINGS: usize = 8;
+pub(crate) const RECORDINGS: usize = 4;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_phalanx");
 const RIG: &str = include_str!("../../fixtures/desk.toml");
