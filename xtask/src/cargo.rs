@@ -11,12 +11,8 @@ use phalanx_lab::files;
 /// The cargo that runs this command, in a folder.
 pub(crate) fn cargo(folder: &Path) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    // What is compiled for one folder serves the others, if it is compiled as the workspace says.
+    // What is compiled for one folder serves the others, if their manifests have the same profiles.
     cargo.current_dir(folder).env("CARGO_TARGET_DIR", target());
-    let profile =
-        [("CARGO_PROFILE_DEV_OPT_LEVEL", "2"), ("CARGO_PROFILE_DEV_DEBUG", "line-tables-only")];
-    // As the one who calls says, if that is said.
-    cargo.envs(profile.into_iter().filter(|(name, _)| std::env::var_os(name).is_none()));
     cargo
 }
 
