@@ -129,10 +129,10 @@ fn a_view_that_shows_something_else_is_named_and_does_no_harm() {
 
 #[test]
 fn a_camera_that_shows_another_moment_is_named_and_does_no_harm() {
-    let Drawn { cameras, mut frames, joints } = drawn(8);
+    let Drawn { cameras, mut frames, joints } = drawn(6);
     let shown: Vec<Option<Mask>> = frames.iter().map(|frame| frame.masks[0].clone()).collect();
     for (k, frame) in frames.iter_mut().enumerate() {
-        frame.masks[0] = shown[(k + 4) % 8].clone();
+        frame.masks[0] = shown[(k + 3) % 6].clone();
     }
     let fit = fit_take(&cameras, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
     let named = |view: usize| {
@@ -140,8 +140,8 @@ fn a_camera_that_shows_another_moment_is_named_and_does_no_harm() {
     };
     let errors: Vec<f64> =
         fit.frames.iter().zip(&joints).map(|(fit, truth)| mean_error(&fit.joints, truth)).collect();
-    assert_eq!([0, 1, 2].map(named), [8, 0, 0], "{errors:.1?}");
-    assert!(errors.iter().sum::<f64>() / 8.0 < 6.0, "{errors:.1?}");
+    assert_eq!([0, 1, 2].map(named), [6, 0, 0], "{errors:.1?}");
+    assert!(errors.iter().sum::<f64>() / 6.0 < 6.0, "{errors:.1?}");
 }
 
 /// The same as it is seen in a mirror: x turns round in the world and in every picture.
