@@ -15,7 +15,7 @@ use crate::figures::pictures;
 use crate::models::{skin_model, wrist_model};
 use crate::paper;
 use crate::paper::page;
-use crate::real::{self, contact_sheet, drawn_takes, two_camera};
+use crate::real::{self, contact_sheet, drawn_takes, interior_edges, two_camera};
 use crate::recipes::{merge, train};
 
 /// An experiment.
@@ -47,6 +47,8 @@ pub enum Command {
     /// Evaluate real takes, by cameras used, input and method.
     #[command(name = "eval-real")]
     EvalReal(Box<real::Arguments>),
+    /// Compare poses of real takes with and without the edges inside silhouettes.
+    InteriorEdges(interior_edges::Arguments),
     /// Draw takes of other hands before other rigs, laid out as real ones are.
     DrawTakes(drawn_takes::Arguments),
     /// Compare ways of choosing which samples to keep, and write docs/results/selection.md.
@@ -100,6 +102,7 @@ impl Command {
             Self::Doubts(arguments) => doubts::run(arguments)?,
             Self::EvalTracking(arguments) => tracking::run(arguments)?,
             Self::EvalReal(arguments) => real::run(arguments)?,
+            Self::InteriorEdges(arguments) => interior_edges::run(arguments)?,
             Self::DrawTakes(arguments) => drawn_takes::run(arguments)?,
             Self::Selection(arguments) => selection::run(arguments)?,
             Self::Hypotheses(arguments) => hypotheses::run(arguments)?,

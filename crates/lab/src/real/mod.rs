@@ -10,6 +10,7 @@ pub(crate) mod contact_sheet;
 pub mod deviation;
 pub(crate) mod drawn_takes;
 pub mod frame;
+pub(crate) mod interior_edges;
 pub mod landmarks;
 pub mod lose;
 pub mod method;

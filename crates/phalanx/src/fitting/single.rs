@@ -23,8 +23,8 @@ const SAME_PLACE: f64 = std::f64::consts::FRAC_PI_8;
 
 /// Fits one frame of a hand that a take was fitted to, before the same cameras.
 ///
-/// The hand is looked for where the take's hand works; where views agree less with it than they do in the take, also
-/// where single frames of the take have it.
+/// The hand is looked for where the take's hand works; where views agree less with it than they do in the take, or one of
+/// them contradicts the others, also where single frames of the take have it, and in their postures.
 ///
 /// # Errors
 /// Another number of masks or landmarks than cameras, or no camera that sees a hand.
@@ -40,13 +40,16 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
     let rest = take.volume.volume.rest_frame();
     let (mut found, contradictions) =
         near(searching, fitting, sight, &[rest])?.ok_or(Error::NoHand)?;
-    if !contradictions.are_none(fitting, &found) {
+    // Those that agree may agree on a wrong pose, and the one that contradicts them may be right.
+    let given = weights.left_out(found.points.len());
+    let is_usual = contradictions.are_usual(&found) && contradictions.are_none(fitting, &found);
+    if found.left_out != given || !is_usual {
         if let Some((other, _)) = near(searching, fitting, sight, &places(take))? {
             found = better(found, other);
         }
         let shown = repertoire::of_poses(right(take).map(|frame| frame.pose));
         let postures = Postures::Each(&shown);
-        if let Some(other) = fitting.again(&found, &found.left_out, &[], postures)? {
+        if let Some(other) = fitting.again(&found, &given, &[], postures)? {
             found = better(found, views::without_disagreeing(fitting, &other)?.0);
         }
     }
