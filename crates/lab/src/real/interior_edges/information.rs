@@ -93,22 +93,18 @@ fn slope(camera: &Camera, crease: &Crease, hand: &PosedHand, twists: &Twists, do
 fn velocity(crease: &Crease, hand: &PosedHand, twists: &Twists, dof: Dof) -> DVec3 {
     let primitive = &hand.primitives[crease.primitive];
     let spheres = primitive.spheres();
-    let of_sphere = |k: usize| match hand.bones[crease.primitive][k].is_moved_by(dof) {
-        true => twists.of(dof).velocity(spheres[k].center),
-        false => DVec3::ZERO,
+    let of_sphere = |k: usize| {
+        let is_moved = hand.bones[crease.primitive][k].is_moved_by(dof);
+        if is_moved { twists.of(dof).velocity(spheres[k].center) } else { DVec3::ZERO }
     };
-    match primitive {
-        Primitive::RoundCone([a, b]) => {
-            let axis = b.center - a.center;
-            let along = (crease.point - a.center).dot(axis) / axis.length_squared();
-            of_sphere(0).lerp(of_sphere(1), along.clamp(0.0, 1.0))
-        }
-        _ => {
-            let apart = |k: &usize| crease.point.distance(spheres[*k].center);
-            let nearest = (0..spheres.len()).min_by(|a, b| apart(a).total_cmp(&apart(b)));
-            of_sphere(nearest.unwrap_or(0))
-        }
+    if let Primitive::RoundCone([a, b]) = primitive {
+        let axis = b.center - a.center;
+        let along = (crease.point - a.center).dot(axis) / axis.length_squared();
+        return of_sphere(0).lerp(of_sphere(1), along.clamp(0.0, 1.0));
     }
+    let apart = |k: &usize| crease.point.distance(spheres[*k].center);
+    let nearest = (0..spheres.len()).min_by(|a, b| apart(a).total_cmp(&apart(b)));
+    of_sphere(nearest.unwrap_or(0))
 }
 
 /// How many pixels a millimetre is at a point.

@@ -19,7 +19,7 @@ use phalanx_refine::{DrawnTerm, PoseFit, PoseFitSettings, PosePrior, SilhouetteO
 use rayon::prelude::*;
 
 use super::frame::FrameName;
-use super::method::{Found, Outcome, Sequence};
+use super::method::{Found, Landmarks, Outcome, Sequence};
 use super::reference::Reference;
 use super::score::{FrameScore, Scorer};
 use super::statistics::{mean, percentile};
@@ -130,7 +130,7 @@ impl Trial<'_> {
     fn compare(&self, table: &mut Table) -> Result<()> {
         let all: Vec<usize> = (0..self.take.cameras.len()).collect();
         let frames = self.take.frames(&all, self.input);
-        let landmarks = vec![Default::default(); all.len()];
+        let landmarks = vec![Landmarks::new(); all.len()];
         let seen_by = |views| Sequence {
             take: self.take,
             views,
