@@ -2,6 +2,7 @@
 //! or before the palm, make poses better; judged by a camera that is left out.
 
 mod crease;
+mod frame_trial;
 mod information;
 mod photograph;
 
@@ -10,12 +11,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use comfy_table::{Table, presets};
-use glam::{DAffine3, DVec2};
 use image::DynamicImage;
-use phalanx::{FrameFit, Mask, TakeFit};
-use phalanx_camera::Camera;
-use phalanx_hand::{Dof, HandShape, Pose};
-use phalanx_refine::{DrawnTerm, PoseFit, PoseFitSettings, PosePrior, SilhouetteObservation};
 use rayon::prelude::*;
 
 use super::frame::FrameName;
@@ -27,18 +23,7 @@ use super::take::{self, Input, Take};
 use super::whole_take::Fits;
 use crate::files;
 use crate::progress;
-use information::{Seen, of_edges};
-use photograph::Photograph;
-
-/// How far off an edge inside the silhouette is, px: as far as silhouettes' borders are taken to be, half of it, and a
-/// quarter.
-const NOISES: [f64; 3] = [2.0, 1.0, 0.5];
-
-/// Standard deviation of a place of a silhouette's border, px.
-const BORDER_NOISE: f64 = 2.0;
-
-/// How often edges are looked for, each time about the pose that those before led to.
-const ROUNDS: usize = 3;
+use frame_trial::{Fitted, FrameTrial, NOISES};
 
 const HEADER: [&str; 10] = [
     "take",
@@ -71,24 +56,6 @@ struct Trial<'a> {
     /// The cameras whose views are fitted.
     used: Vec<usize>,
     input: Input,
-}
-
-/// One frame of a trial, ready to be fitted.
-struct FrameTrial<'a> {
-    hand: &'a HandShape,
-    rest: DAffine3,
-    start: Pose,
-    evidence: Vec<SilhouetteObservation>,
-    views: Vec<Seen<'a>>,
-    prior: PosePrior,
-}
-
-/// What came of a frame.
-struct Fitted {
-    /// The pose by silhouettes, and those with edges known to each of [`NOISES`].
-    poses: Vec<Pose>,
-    /// How many edges were found last.
-    edges: usize,
 }
 
 /// Prints the comparison.
@@ -221,74 +188,4 @@ impl Trial<'_> {
         let name = &camera.camera.name;
         camera.shown(frame)?.with_context(|| format!("{}: no {name} {frame}", self.take.name))
     }
-}
-
-impl<'a> FrameTrial<'a> {
-    fn new(
-        cameras: &'a [Camera],
-        take: &'a TakeFit,
-        fit: &FrameFit,
-        masks: &[Option<Mask>],
-        pictures: &[DynamicImage],
-    ) -> Result<Self> {
-        let rest = take.volume.volume.rest_frame();
-        let (mut evidence, mut views) = (Vec::new(), Vec::new());
-        for (k, camera) in cameras.iter().enumerate() {
-            let Some(mask) = masks[k].as_ref().filter(|_| fit.views[k].is_mask_used) else {
-                continue;
-            };
-            let [wrist, knuckle] = [0, 9].map(|joint| camera.project(fit.joints[joint]));
-            let Some((wrist, knuckle)) = wrist.zip(knuckle) else { continue };
-            // The arm behind the hand is not compared.
-            let length = 2.0 * wrist.distance(knuckle);
-            let is_known = |place: DVec2| place.distance(knuckle) < length;
-            evidence.push(SilhouetteObservation::within(camera, mask, is_known)?);
-            let photograph = Photograph::new(&pictures[k], mask.hand_pixels());
-            views.push(Seen { camera, photograph });
-        }
-        let prior = PosePrior::independent(fit.pose, &deviations())?;
-        Ok(Self { hand: &take.hand, rest, start: fit.pose, evidence, views, prior })
-    }
-
-    fn fitted(&self) -> Result<Fitted> {
-        if self.evidence.is_empty() {
-            return Ok(Fitted { poses: vec![self.start; NOISES.len() + 1], edges: 0 });
-        }
-        let alone = self.fit(&self.start, &self.prior)?.pose;
-        let (mut poses, mut edges) = (vec![alone], 0);
-        for noise in NOISES {
-            let mut pose = alone;
-            for _ in 0..ROUNDS {
-                let (known, found) =
-                    of_edges(&self.views, self.hand, &self.rest, &pose, &self.prior, noise)?;
-                edges = found;
-                pose = self.fit(&pose, &self.prior.product(&known)?)?.pose;
-            }
-            poses.push(pose);
-        }
-        Ok(Fitted { poses, edges })
-    }
-
-    fn fit(&self, start: &Pose, prior: &PosePrior) -> Result<PoseFit> {
-        let mut settings = PoseFitSettings {
-            max_restarts: 0,
-            drawn: DrawnTerm::Area,
-            ..PoseFitSettings::of_noise(BORDER_NOISE)
-        };
-        settings.levels.remove(0);
-        for level in &mut settings.levels {
-            level.every *= 2;
-        }
-        Ok(settings.fit(self.hand, &self.rest, &self.evidence, start, prior)?)
-    }
-}
-
-/// How far a pose is from that of the take, radians and mm.
-fn deviations() -> [f64; Dof::COUNT] {
-    std::array::from_fn(|index| match Dof::ALL[index] {
-        Dof::TX | Dof::TY | Dof::TZ => 10.0,
-        Dof::ThetaX | Dof::ThetaY | Dof::ThetaZ => 0.2,
-        Dof::WristDeviation | Dof::WristFlexion => 0.25,
-        _ => 0.35,
-    })
 }

@@ -10,12 +10,14 @@ use phalanx_segmentation::HandDetector;
 
 use super::delay::Delay;
 use super::follow::{self, Followed, follow};
+use super::last::Last;
 use super::motion::{Motion, Prediction};
 use super::noise::MotionNoise;
 use super::own_hand::OwnHand;
 use super::recent::Recent;
 use super::recover::recover;
 use super::seen::Seen;
+use super::settings::TrackSettings;
 use super::state::TrackerState;
 use crate::error::{Error, Result};
 use crate::fitting::found::Found;
@@ -28,25 +30,6 @@ use crate::fitting::take::{Known, Proportions, TakeFit};
 use crate::fitting::take_frame::TakeFrame;
 use crate::fitting::{consensus, misfit, size, starts, views};
 use crate::progress::NoProgress;
-
-/// How a hand is tracked.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TrackSettings {
-    /// The hand, which may be a mean one, and its side.
-    pub hand: HandShape,
-    /// Whether the hand is that person's, or its proportions are learnt on the way and then kept.
-    pub proportions: Proportions,
-    /// How long answers may wait.
-    pub delay: Delay,
-}
-
-impl Default for TrackSettings {
-    /// A right hand like any other, a frame late.
-    fn default() -> Self {
-        let (hand, proportions) = (HandShape::adult(), Proportions::FromTake);
-        Self { hand, proportions, delay: Delay::default() }
-    }
-}
 
 /// A frame that was tracked.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,16 +63,6 @@ pub struct Tracker {
     owes: bool,
     finder: HandDetector,
     recent: Recent,
-}
-
-/// The frame that came last.
-#[derive(Debug, Clone)]
-struct Last {
-    time: f64,
-    /// `None` where no view showed the hand.
-    found: Option<Found>,
-    /// `None` as long as no view has shown a hand.
-    motion: Option<Motion>,
 }
 
 impl Tracker {
@@ -204,7 +177,7 @@ impl Tracker {
         let due = match (self.delay, &last) {
             (Delay::None, _) => Some(self.report(&next)?),
             (Delay::OneFrame, Some(last)) if self.owes => {
-                Some(self.report(&self.in_the_light(last, prediction.as_ref(), &next))?)
+                Some(self.report(&last.in_the_light(prediction.as_ref(), &next, self.hand()))?)
             }
             (Delay::OneFrame, _) => None,
         };
@@ -359,27 +332,6 @@ impl Tracker {
         let covariance: Vec<f64> =
             found.refined.covariance.iter().map(|own| own / self.noise.unit()).collect();
         Motion::starting(found.rest, found.refined.pose, &covariance, self.hand())
-    }
-
-    /// A frame in the light of the next one.
-    fn in_the_light(&self, last: &Last, prediction: Option<&Prediction>, next: &Last) -> Last {
-        let (Some(found), Some(motion)) = (&last.found, &last.motion) else {
-            return last.clone();
-        };
-        let (Some(prediction), Some(later)) = (prediction, &next.motion) else {
-            return last.clone();
-        };
-        // A hand that was looked for elsewhere tells nothing of the way to it.
-        let is_followed = |found: &Found| found.rest == prediction.motion.rest;
-        let smoothing = prediction.smoothing.as_ref();
-        let Some(smoothing) = smoothing.filter(|_| next.found.as_ref().is_some_and(is_followed))
-        else {
-            return last.clone();
-        };
-        let pose = motion.smoothed(smoothing, &prediction.motion, later, self.hand());
-        let refined = phalanx_refine::PoseFit { pose, ..found.refined.clone() };
-        let found = Found { rest: motion.rest, refined, ..found.clone() };
-        Last { found: Some(found), ..last.clone() }
     }
 
     /// What is said of a frame.
