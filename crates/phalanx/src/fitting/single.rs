@@ -24,7 +24,8 @@ const SAME_PLACE: f64 = std::f64::consts::FRAC_PI_8;
 /// Fits one frame of a hand that a take was fitted to, before the same cameras.
 ///
 /// The hand is looked for where the take's hand works; where views agree less with it than they do in the take, or one of
-/// them contradicts the others, also where single frames of the take have it, and in their postures.
+/// them contradicts the others, also where single frames of the take have it, and in their postures; and anywhere if that
+/// does not help.
 ///
 /// # Errors
 /// Another number of masks or landmarks than cameras, or no camera that sees a hand.
@@ -50,6 +51,14 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
         let shown = repertoire::of_poses(right(take).map(|frame| frame.pose));
         let postures = Postures::Each(&shown);
         if let Some(other) = fitting.again(&found, &given, &[], postures)? {
+            found = better(found, views::without_disagreeing(fitting, &other)?.0);
+        }
+        // Nothing in the take need be like this frame.
+        let agree = Contradictions::of(fitting, &found)?.are_none(fitting, &found);
+        if (found.left_out != given || !agree)
+            && let Some(other) = search::anywhere(searching, sight)?
+        {
+            let other = fitting.improved(other)?;
             found = better(found, views::without_disagreeing(fitting, &other)?.0);
         }
     }

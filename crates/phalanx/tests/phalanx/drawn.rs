@@ -84,6 +84,25 @@ pub(crate) fn drawn_coming(hand: &HandShape, count: usize, away: usize) -> Drawn
     drawn_in(hand, (0..count).map(coming))
 }
 
+/// Each frame by itself: fingers bent by any amounts, and the hand turned in any way that an arm allows.
+pub(crate) fn drawn_stills(count: usize) -> Drawn {
+    let mut random = ItemRng::new(7, 0);
+    let still = move |_: usize| {
+        let mut pose = pose(2);
+        for finger in Digit::FINGERS {
+            let bent = random.between(0.0, 1.0);
+            let angles = [random.between(-0.15, 0.15), 1.3 * bent, 1.6 * bent, 0.9 * bent];
+            finger.dofs().into_iter().zip(angles).for_each(|(dof, angle)| pose[dof] = angle);
+        }
+        pose[Dof::ThetaX] = random.between(-0.6, 0.6);
+        pose[Dof::ThetaY] = random.between(-0.4, 0.4);
+        pose[Dof::ThetaZ] = random.between(-1.0, 2.0);
+        pose[Dof::WristFlexion] = random.between(-0.5, 0.5);
+        pose
+    };
+    drawn_in(&hand(), (0..count).map(still))
+}
+
 /// How many frames there are in a second.
 const RATE: f64 = 30.0;
 

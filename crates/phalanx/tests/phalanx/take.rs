@@ -11,7 +11,8 @@ use phalanx_hand::{Dof, HandShape, Pose, Side};
 use phalanx_segmentation::Mask;
 
 use crate::drawn::{
-    Drawn, FITTED, cameras, drawn, drawn_coming, drawn_of, drawn_turning, hand, mean_error,
+    Drawn, FITTED, cameras, drawn, drawn_coming, drawn_of, drawn_stills, drawn_turning, hand,
+    mean_error,
 };
 
 #[test]
@@ -41,6 +42,19 @@ fn a_frame_alone_is_found_however_the_take_turned_its_hand() {
         let alone = fit_frame(&cameras, &frames[k], &take).expect("a fit");
         let errors = [&take.frames[k], &alone].map(|fit| mean_error(&fit.joints, truth));
         assert!(errors.iter().all(|error| *error < 8.0), "frame {k}: {errors:.1?}");
+    }
+}
+
+/// Two views agreed on a wrong pose of these, and the one that was right was left out.
+#[test]
+fn a_frame_alone_is_found_where_nothing_in_the_take_is_like_it() {
+    let (Drawn { cameras, .. }, take) = &*FITTED;
+    let Drawn { frames, joints, .. } = drawn_stills(52);
+    for k in [10, 29, 51] {
+        let alone = fit_frame(cameras, &frames[k], take).expect("a fit");
+        let error = mean_error(&alone.joints, &joints[k]);
+        assert!(error < 8.0, "still {k}: {error:.1}");
+        assert!(alone.views.iter().all(|view| view.missing.is_none()), "still {k}");
     }
 }
 
