@@ -64,6 +64,15 @@ struct Screening {
 /// Looks for a hand with nothing known but what the views saw: at every placement, in every
 /// direction about the forearm; `None` where no view has anything like a hand.
 pub(super) fn anywhere(fitter: &FrameFitter<'_>, sight: &Sight) -> Result<Option<Found>> {
+    following(Follow::All, fitter, sight)
+}
+
+/// The same of a hand that is known: only the best of the poses are followed.
+pub(super) fn known_anywhere(fitter: &FrameFitter<'_>, sight: &Sight) -> Result<Option<Found>> {
+    following(Follow::Few, fitter, sight)
+}
+
+fn following(follow: Follow, fitter: &FrameFitter<'_>, sight: &Sight) -> Result<Option<Found>> {
     let guess = |placement: &Placement| {
         let turned = (0..TURNS).flat_map(|turn| {
             let mut pose = Pose::REST;
@@ -71,7 +80,7 @@ pub(super) fn anywhere(fitter: &FrameFitter<'_>, sight: &Sight) -> Result<Option
             starts::extremes(&pose)
         });
         let rest = starts::frame_of(placement.wrist, placement.arm);
-        Guess { starts: turned.collect(), ..Guess::at(rest) }
+        Guess { starts: turned.collect(), follow, ..Guess::at(rest) }
     };
     let guesses = by_points(fitter, sight).chain(sight.placements.iter().map(guess));
     best_of(fitter, sight, guesses)

@@ -56,7 +56,7 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
         // Nothing in the take need be like this frame.
         let agree = Contradictions::of(fitting, &found)?.are_none(fitting, &found);
         if (found.left_out != given || !agree)
-            && let Some(other) = search::anywhere(searching, sight)?
+            && let Some(other) = search::known_anywhere(searching, sight)?
         {
             let other = fitting.improved(other)?;
             found = better(found, views::without_disagreeing(fitting, &other)?.0);
