@@ -14,7 +14,6 @@ const STEP: f64 = 0.5;
 const STRONG: f64 = 2.0;
 
 /// A picture in grey, and the change of its levels that is usual within the hand.
-#[derive(Clone)]
 pub(super) struct Photograph {
     levels: GrayImage,
     usual: f64,
