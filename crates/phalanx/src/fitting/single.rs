@@ -23,9 +23,8 @@ const SAME_PLACE: f64 = std::f64::consts::FRAC_PI_8;
 
 /// Fits one frame of a hand that a take was fitted to, before the same cameras.
 ///
-/// The hand is looked for where the take's hand works; where views agree less with it than they do in the take, or one of
-/// them contradicts the others, also where single frames of the take have it, and in their postures; and anywhere if that
-/// does not help.
+/// The hand is looked for where the take's hand works; where a view contradicts it or the others, also where single frames
+/// of the take have it, and in their postures; and anywhere if that does not help.
 ///
 /// # Errors
 /// Another number of masks or landmarks than cameras, or no camera that sees a hand.
@@ -43,8 +42,7 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
         near(searching, fitting, sight, &[rest])?.ok_or(Error::NoHand)?;
     // Those that agree may agree on a wrong pose, and the one that contradicts them may be right.
     let given = weights.left_out(found.points.len());
-    let is_usual = contradictions.are_usual(&found) && contradictions.are_none(fitting, &found);
-    if found.left_out != given || !is_usual {
+    if found.left_out != given || !contradictions.are_none(fitting, &found) {
         if let Some((other, _)) = near(searching, fitting, sight, &places(take))? {
             found = better(found, other);
         }
