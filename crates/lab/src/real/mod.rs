@@ -33,9 +33,9 @@ pub(crate) mod two_camera;
 pub mod whole_take;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use clap::Args;
 use phalanx::Progress;
 use serde::Serialize;
@@ -110,15 +110,7 @@ struct Rows<'a> {
 /// # Errors
 /// Data that is not as expected; names the file.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let mut folders = take::takes_in(&arguments.data)?;
-    let name = |folder: &Path| folder.file_name().map(|name| name.to_string_lossy().into_owned());
-    for wanted in &arguments.take {
-        let is_there = folders.iter().any(|folder| name(folder).as_ref() == Some(wanted));
-        ensure!(is_there, "{}: no take '{wanted}'", arguments.data.display());
-    }
-    if !arguments.take.is_empty() {
-        folders.retain(|folder| name(folder).is_some_and(|name| arguments.take.contains(&name)));
-    }
+    let folders = take::chosen_in(&arguments.data, &arguments.take)?;
     let (mut rows, mut notes) = (Reported::default(), Vec::new());
     for folder in &folders {
         let take = Take::read(folder)?;

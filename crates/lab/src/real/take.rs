@@ -206,6 +206,15 @@ impl TakeCamera {
         path.map(|path| self.decode(path)).transpose()
     }
 
+    /// The photograph of a frame, in colour or else grey, if the take has one.
+    ///
+    /// # Errors
+    /// As of [`picture`](Self::picture).
+    pub fn in_colour_or_grey(&self, frame: &FrameName) -> Result<Option<DynamicImage>> {
+        let path = self.colour.get(frame).or_else(|| self.grey.get(frame));
+        path.map(|path| self.decode(path)).transpose()
+    }
+
     /// The photograph of a frame in colour, if the take has one.
     ///
     /// # Errors
@@ -266,5 +275,22 @@ pub fn takes_in(data: &Path) -> Result<Vec<PathBuf>> {
     folders.retain(|folder| folder.join("calibration.json").is_file());
     folders.sort();
     ensure!(!folders.is_empty(), "{}: no folder with a calibration.json", data.display());
+    Ok(folders)
+}
+
+/// The takes of these names in a folder of data, or all if none is named.
+///
+/// # Errors
+/// As of [`takes_in`]; also a name that no take has.
+pub fn chosen_in(data: &Path, wanted: &[String]) -> Result<Vec<PathBuf>> {
+    let mut folders = takes_in(data)?;
+    let name = |folder: &Path| folder.file_name().map(|name| name.to_string_lossy().into_owned());
+    for wanted in wanted {
+        let is_there = folders.iter().any(|folder| name(folder).as_ref() == Some(wanted));
+        ensure!(is_there, "{}: no take '{wanted}'", data.display());
+    }
+    if !wanted.is_empty() {
+        folders.retain(|folder| name(folder).is_some_and(|name| wanted.contains(&name)));
+    }
     Ok(folders)
 }

@@ -64,15 +64,15 @@ struct Screening {
 /// Looks for a hand with nothing known but what the views saw: at every placement, in every
 /// direction about the forearm; `None` where no view has anything like a hand.
 pub(super) fn anywhere(fitter: &FrameFitter<'_>, sight: &Sight) -> Result<Option<Found>> {
-    following(Follow::All, fitter, sight)
+    anywhere_with(Follow::All, fitter, sight)
 }
 
 /// The same of a hand that is known: only the best of the poses are followed.
 pub(super) fn known_anywhere(fitter: &FrameFitter<'_>, sight: &Sight) -> Result<Option<Found>> {
-    following(Follow::Few, fitter, sight)
+    anywhere_with(Follow::Few, fitter, sight)
 }
 
-fn following(follow: Follow, fitter: &FrameFitter<'_>, sight: &Sight) -> Result<Option<Found>> {
+fn anywhere_with(follow: Follow, fitter: &FrameFitter<'_>, sight: &Sight) -> Result<Option<Found>> {
     let guess = |placement: &Placement| {
         let turned = (0..TURNS).flat_map(|turn| {
             let mut pose = Pose::REST;

@@ -65,11 +65,8 @@ struct Trial<'a> {
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut table = Table::new();
     table.load_style(presets::ASCII_MARKDOWN).set_header(HEADER);
-    for folder in take::takes_in(&arguments.data)? {
+    for folder in take::chosen_in(&arguments.data, &arguments.take)? {
         let take = Take::read(&folder)?;
-        if !arguments.take.is_empty() && !arguments.take.contains(&take.name) {
-            continue;
-        }
         let reference = Reference::read(&folder, &take.camera_names())?;
         let all: Vec<usize> = (0..take.cameras.len()).collect();
         let is_masked = !take.frames(&all, Input::Masks).is_empty();
@@ -113,7 +110,7 @@ impl Trial<'_> {
         let fit = fit.map_err(|error| anyhow!("{}: {error}", self.take.name))?;
         let fitted = (0..frames.len()).into_par_iter().map(|number| {
             let frame = fits.frame_of(&sequence, number)?;
-            let pictures = self.used.iter().map(|&view| self.grey(view, &frames[number]));
+            let pictures = self.used.iter().map(|&view| self.photograph(view, &frames[number]));
             let pictures = pictures.collect::<Result<Vec<_>>>()?;
             let cameras = sequence.cameras();
             let trial =
@@ -183,9 +180,10 @@ impl Trial<'_> {
     }
 
     /// The photograph of a frame through a camera.
-    fn grey(&self, view: usize, frame: &FrameName) -> Result<DynamicImage> {
+    fn photograph(&self, view: usize, frame: &FrameName) -> Result<DynamicImage> {
         let camera = &self.take.cameras[view];
         let name = &camera.camera.name;
-        camera.shown(frame)?.with_context(|| format!("{}: no {name} {frame}", self.take.name))
+        let photograph = camera.in_colour_or_grey(frame)?;
+        photograph.with_context(|| format!("{}: no photograph of {name}, {frame}", self.take.name))
     }
 }
