@@ -16,6 +16,16 @@ pub enum Side {
     Left,
 }
 
+impl Side {
+    /// That of the person's other hand.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Right => Self::Left,
+            Self::Left => Self::Right,
+        }
+    }
+}
+
 /// The shape of a hand: lengths and radii in millimetres, angles in degrees, as in its file,
 /// in the frame of a right hand at rest (origin at the wrist, +X to the thumb's side, +Y out of
 /// the back, +Z towards the fingers).

@@ -88,7 +88,10 @@ fn next(arguments: &Arguments, findings: &[Finding]) -> String {
         return format!("phalanx doctor --rig {rig} RECORDING looks at what your cameras see");
     }
     let given = arguments.segment.given();
-    format!("phalanx track --rig {rig} {}{given} --out take.csv", arguments.recordings.join(" "))
+    let is_left = findings.iter().any(|finding| finding.what == pictures::LEFT_HAND);
+    let side = if is_left { " --side left" } else { "" };
+    let recordings = arguments.recordings.join(" ");
+    format!("phalanx track --rig {rig} {recordings}{given}{side} --out take.csv")
 }
 
 fn text(findings: &[Finding], next: &str) -> String {

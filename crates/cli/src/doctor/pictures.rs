@@ -1,17 +1,20 @@
 //! What the cameras see, against the calibration.
 
 use anyhow::Result;
-use phalanx::{NoProgress, TakeSettings, fit_take};
+use phalanx::{FitDoubt, NoProgress, TakeFrame, TakeSettings, fit_take};
 use phalanx_camera::Rig;
 use phalanx_hand::Side;
 
 use crate::counts::counted;
 use crate::finding::Finding;
-use crate::recording::agreement::{agreement, named};
+use crate::recording::agreement::{self, named};
 use crate::recording::source::{RecordingArguments, Source};
 
 /// Moments that are looked at.
 const MOMENTS: usize = 12;
+
+/// What the finding is of that a recording shows a left hand.
+pub(super) const LEFT_HAND: &str = "left hand";
 
 /// A recording's findings; one that cannot be read is the only one.
 pub(super) fn findings(rig: &Rig, recording: &RecordingArguments) -> Vec<Finding> {
@@ -45,8 +48,21 @@ fn seen(rig: &Rig, recording: &RecordingArguments) -> Result<Vec<Finding>> {
         Finding::broken("recording", text)
     }));
     if failures.is_empty() && cameras > 1 {
-        let fit = fit_take(&source.cameras, &frames, &TakeSettings::default(), &NoProgress)?;
-        findings.extend((0..cameras).map(|view| agreement(&source, view, &fit)));
+        findings.extend(of_hand(&source, &frames)?);
     }
     Ok(findings)
+}
+
+/// What a hand that is fitted to some moments says of the recording, whichever hand it is.
+fn of_hand(source: &Source, frames: &[TakeFrame]) -> Result<Vec<Finding>> {
+    let mut settings = TakeSettings::default();
+    let fit = fit_take(&source.cameras, frames, &settings, &NoProgress)?;
+    if !fit.frames.iter().any(|frame| frame.doubts.contains(&FitDoubt::OtherSide)) {
+        return Ok(agreement::findings(source, &fit));
+    }
+    settings.hand.side = settings.hand.side.other();
+    let fit = fit_take(&source.cameras, frames, &settings, &NoProgress)?;
+    let text = "the recording seems to show one: `phalanx track` needs `--side left`";
+    let findings = agreement::findings(source, &fit).into_iter();
+    Ok(std::iter::once(Finding::good(LEFT_HAND, text)).chain(findings).collect())
 }

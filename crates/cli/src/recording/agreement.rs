@@ -5,6 +5,7 @@ use phalanx_camera::Camera;
 
 use crate::counts::counted;
 use crate::finding::Finding;
+use crate::recording::doubt;
 use crate::recording::source::Source;
 
 /// How a finding calls a camera.
@@ -12,9 +13,20 @@ pub(crate) fn named(camera: &Camera) -> String {
     format!("camera '{}'", camera.name)
 }
 
+/// What a fitted hand says of a recording: what is mistaken about all of it, else how well each camera agrees.
+pub(crate) fn findings(source: &Source, fit: &TakeFit) -> Vec<Finding> {
+    let cameras = &source.cameras;
+    let doubts = fit.frames.first().map_or(&[][..], |frame| &frame.doubts);
+    let codes = doubts.iter().map(|doubt| doubt::code(doubt, cameras));
+    if let Some(remedy) = codes.filter_map(|code| doubt::remedy(&code, fit.hand.side)).next() {
+        return vec![Finding::broken("recording", remedy)];
+    }
+    (0..cameras.len()).map(|view| agreement(source, view, fit)).collect()
+}
+
 /// Whether what a camera shows meets what the others show in space. One that contradicts them at most moments
 /// does not stand where the calibration has it, or its frames are of other moments.
-pub(crate) fn agreement(source: &Source, view: usize, fit: &TakeFit) -> Finding {
+fn agreement(source: &Source, view: usize, fit: &TakeFit) -> Finding {
     let look = source.advice();
     let views = || fit.frames.iter().map(|frame| frame.views[view]);
     let all = fit.frames.len();

@@ -2,6 +2,7 @@
 
 pub(crate) mod agreement;
 pub(crate) mod assign;
+pub(crate) mod doubt;
 mod ffmpeg;
 pub(crate) mod landmarks;
 mod mp4;

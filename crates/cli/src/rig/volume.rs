@@ -12,7 +12,7 @@ use phalanx_hand::{HandShape, Side};
 use crate::counts::counted;
 use crate::finding::{Finding, State};
 use crate::progress::Bar;
-use crate::recording::agreement::agreement;
+use crate::recording::agreement;
 use crate::recording::source::Source;
 
 /// Side of the cube in which the hand works unless it is said, mm.
@@ -100,7 +100,7 @@ pub(super) fn seen(source: &Source, side: Side) -> Result<VolumeEstimate> {
     let settings = TakeSettings { hand, ..TakeSettings::default() };
     let fit = fit_take(&source.cameras, &frames, &settings, &Bar::new())?;
     if source.cameras.len() > 1 {
-        let findings = (0..source.cameras.len()).map(|view| agreement(source, view, &fit));
+        let findings = agreement::findings(source, &fit).into_iter();
         let findings = findings.filter(|finding| finding.state != State::Good);
         for Finding { what, text, .. } in findings {
             eprintln!("doubt: {what}: {text}");

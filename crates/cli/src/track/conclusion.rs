@@ -1,14 +1,17 @@
 //! How a run went.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::ExitCode;
 
-use crate::counts::{counted, either};
 use anyhow::{Result, ensure};
 use phalanx_camera::Camera;
 use phalanx_hand::HandShape;
 use phalanx_io::take::{FrameView, TakeFrame};
 use serde::{Deserialize, Serialize};
+
+use crate::counts::{counted, either};
+use crate::recording::doubt;
 
 /// So many of the pictures that could not be read are named.
 const NAMED: usize = 20;
@@ -19,6 +22,8 @@ pub(super) struct Tally {
     frames: usize,
     with_hand: usize,
     doubted: usize,
+    /// What any was doubted for.
+    doubts: BTreeSet<String>,
     /// Without one of the views or more, and without each of them.
     with_fewer: usize,
     without: Vec<usize>,
@@ -32,6 +37,7 @@ impl Tally {
         self.frames += 1;
         self.with_hand += usize::from(frame.estimate.is_some());
         self.doubted += usize::from(!frame.doubts.is_empty());
+        self.doubts.extend(frame.doubts.iter().cloned());
         let is_left_out = |view: &FrameView| view.left_out.is_some();
         self.with_fewer += usize::from(frame.views.iter().any(is_left_out));
         self.without.resize(frame.views.len(), 0);
@@ -54,7 +60,8 @@ impl Tally {
         hand: &HandShape,
         out: &Path,
     ) -> Result<ExitCode> {
-        let Self { frames, with_hand, doubted, with_fewer, without, failures, named } = self;
+        let Self { frames, with_hand, doubted, doubts, with_fewer, without, failures, named } =
+            self;
         for failure in named {
             eprintln!("phalanx: {failure}");
         }
@@ -62,6 +69,9 @@ impl Tally {
             eprintln!("phalanx: and {} more", failures - named.len());
         }
         ensure!(*with_hand > 0, "no frame shows a hand");
+        for remedy in doubts.iter().filter_map(|code| doubt::remedy(code, hand.side)) {
+            eprintln!("phalanx: {remedy}");
+        }
         if *with_fewer > 0 {
             let fewer = counted(*with_fewer, "frame");
             eprintln!("phalanx: in {fewer} a view was left out (column `left_out`)");

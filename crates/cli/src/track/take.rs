@@ -6,6 +6,7 @@ use phalanx_camera::Camera;
 use phalanx_hand::HandShape;
 use phalanx_io::take::{FrameView, LeftOut, PoseEstimate, TakeFrame, TakeHeader};
 
+use crate::recording::doubt;
 use crate::recording::timeline::Moment;
 
 /// What holds for all frames.
@@ -52,7 +53,7 @@ pub(crate) fn frame(
         overlap: view.overlap,
         left_out: picture.and_then(|_| left_out(view)),
     });
-    let doubts = fit.doubts.iter().map(|doubt| code(doubt, cameras)).collect();
+    let doubts = fit.doubts.iter().map(|doubt| doubt::code(doubt, cameras)).collect();
     TakeFrame {
         index: index as u64,
         time,
@@ -72,17 +73,5 @@ fn left_out(view: &ViewFit) -> Option<LeftOut> {
             Some(LeftOut::Landmarks)
         }
         _ => None,
-    }
-}
-
-/// A doubt in one word, with the camera that it is about.
-fn code(doubt: &FitDoubt, cameras: &[Camera]) -> String {
-    match doubt {
-        FitDoubt::NotSeen => "no-hand".to_owned(),
-        FitDoubt::Open => "open".to_owned(),
-        FitDoubt::PoorFit { .. } => "poor-fit".to_owned(),
-        FitDoubt::PoorLandmarks { view, .. } => format!("poor-landmarks:{}", cameras[*view].name),
-        FitDoubt::CutOff { view } => format!("cut-off:{}", cameras[*view].name),
-        _ => "doubtful".to_owned(),
     }
 }

@@ -134,11 +134,21 @@ impl Desk {
     /// Draws a silhouette of the hand, closed by so much, into `<folder>/<camera>/<name>` for each
     /// camera.
     pub(crate) fn draw_frame(&self, folder: &str, name: &str, closed: f64) {
-        let rest = rig().volume.rest_frame();
-        for camera in rig().cameras {
+        self.draw_hand(&rig(), &HandShape::adult(), (folder, name), &closing(closed));
+    }
+
+    /// The same of a posed hand before the cameras of a rig.
+    pub(crate) fn draw_hand(
+        &self,
+        rig: &Rig,
+        hand: &HandShape,
+        (folder, name): (&str, &str),
+        pose: &Pose,
+    ) {
+        for camera in &rig.cameras {
             let folder = self.path(folder).join(&camera.name);
             std::fs::create_dir_all(&folder).unwrap();
-            let mask = draw_silhouette(&camera, &HandShape::adult(), &closing(closed), &rest);
+            let mask = draw_silhouette(camera, hand, pose, &rig.volume.rest_frame());
             mask.unwrap().save(folder.join(name)).unwrap();
         }
     }

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use phalanx::draw_silhouette;
 use phalanx_camera::{Intrinsics, Rig};
-use phalanx_hand::HandShape;
+use phalanx_hand::{HandShape, Side};
 use serde_json::Value;
 
 use crate::desk::{DEMO, Desk, Outcome, closing, run};
@@ -157,7 +157,34 @@ fn a_camera_that_contradicts_the_others_is_named() {
     desk.copy_eight_moments();
     let outcome = run(desk.folder(), ["rig", "check", "exchanged.toml", "eight", "--mask"]);
     assert_eq!(outcome.code, Some(0), "{}", outcome.err);
-    assert!(outcome.err.contains("doubt: camera '"), "{}", outcome.err);
+    assert!(outcome.err.contains("doubt: recording: the cameras"), "{}", outcome.err);
+}
+
+#[test]
+fn a_left_hand_is_told_and_leads_on() {
+    let desk = Desk::new();
+    let rig = std::fs::read_to_string(DEMO.0.join("demo/rig.toml")).unwrap();
+    desk.write("rig.toml", rig.as_bytes());
+    let rig = Rig::from_toml(&rig).unwrap();
+    let hand = HandShape { side: Side::Left, ..HandShape::adult() };
+    for frame in 0..6 {
+        let name = format!("{frame}.png");
+        desk.draw_hand(&rig, &hand, ("take", &name), &closing(0.15 * f64::from(frame)));
+    }
+    let (code, report) = doctor(&desk, &["--rig", "rig.toml", "take", "--mask"]);
+    assert_eq!(code, Some(0), "{report:#}");
+    assert!(in_state(&report, "good").join("\n").contains("left hand: the recording seems"));
+    assert_eq!(
+        report["next"],
+        "phalanx track --rig rig.toml take --mask --side left --out take.csv"
+    );
+
+    let outcome = run(desk.folder(), "track --rig rig.toml take --mask --out t.csv".split(' '));
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    assert!(outcome.err.contains("looks like a left one, not a right one"), "{}", outcome.err);
+    assert!(outcome.err.contains("6 are doubted"), "{}", outcome.err);
+    let rows = String::from_utf8(desk.read("t.csv")).unwrap();
+    assert_eq!(rows.matches("other-side").count(), 6, "{rows}");
 }
 
 #[test]

@@ -242,5 +242,8 @@ fn a_recording_of_other_moments_or_cameras_is_told() {
     let given = ["side=eight/other_side", "top=eight/top", "other_side=eight/side"];
     let rest = ["track", "--rig", "three.toml", "--mask", "--out", "t.csv"];
     let outcome = run(desk.folder(), rest.iter().chain(&given));
-    assert!(outcome.err.contains("was it moved or exchanged with another"), "{outcome:?}");
+    assert!(
+        outcome.err.contains("cameras side and other_side seem to have each other's pictures"),
+        "{outcome:?}"
+    );
 }

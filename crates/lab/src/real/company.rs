@@ -1,7 +1,7 @@
 //! What takes are drawn with beside the hand.
 
 use glam::{DAffine3, DVec3};
-use phalanx_hand::{HandShape, Pose, PosedHand, Primitive, Side, Sphere};
+use phalanx_hand::{HandShape, Pose, PosedHand, Primitive, Sphere};
 
 /// What is beside a hand.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -23,11 +23,7 @@ const OFF_PALM: f64 = 25.0;
 
 /// The other hand of a person, of whose one `rest` is the frame at rest.
 pub(super) fn other_hand(hand: &HandShape, pose: &Pose, rest: &DAffine3) -> Vec<Primitive> {
-    let side = match hand.side {
-        Side::Left => Side::Right,
-        Side::Right => Side::Left,
-    };
-    let other = HandShape { side, ..hand.clone() };
+    let other = HandShape { side: hand.side.other(), ..hand.clone() };
     other.pose(pose, &(*rest * DAffine3::from_translation(BESIDE * DVec3::X))).primitives
 }
 

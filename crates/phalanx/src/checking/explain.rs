@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use phalanx_hand::{Dof, HandShape, Pose, Side, sample_pose};
+use phalanx_hand::{Dof, HandShape, Pose, sample_pose};
 use phalanx_refine::PosePrior;
 
 use crate::checking::doubt::{Cause, ViewDoubt};
@@ -133,11 +133,7 @@ impl Diagnosis<'_> {
     /// The hand is of the other side.
     fn other_side(&self) -> Result<Option<Reading>> {
         let hand = self.estimator.hand();
-        let side = match hand.side {
-            Side::Left => Side::Right,
-            Side::Right => Side::Left,
-        };
-        let mirrored = HandShape { side, ..hand.clone() };
+        let mirrored = HandShape { side: hand.side.other(), ..hand.clone() };
         let fitted = self.fit(&self.quick_fit(self.estimate), &mirrored, self.estimate)?;
         Ok(fitted.map(|fitted| Reading { causes: self.all(Cause::OtherSide), fitted }))
     }

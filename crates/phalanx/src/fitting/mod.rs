@@ -12,6 +12,7 @@ mod found;
 mod frame_fit;
 mod knowledge;
 mod misfit;
+mod mistake;
 mod motion;
 mod observation;
 mod passes;

@@ -9,8 +9,9 @@ use super::flesh;
 use super::found::Found;
 use super::frame_fit::FrameFitter;
 use super::misfit;
-use super::proportions::KnownHand;
+use super::mistake::Mistake;
 use super::starts;
+use super::take::Known;
 use super::views;
 use crate::error::Result;
 
@@ -75,6 +76,13 @@ pub enum FitDoubt {
     NotSeen,
     /// The views leave the pose open; its deviations are infinite.
     Open,
+    /// A hand of the other side explains the take much better: every pose is wrong.
+    OtherSide,
+    /// The take is explained much better if two cameras' pictures are exchanged: every pose is wrong.
+    Exchanged {
+        /// The cameras' numbers.
+        views: [usize; 2],
+    },
     /// A view that was used shows something else than the pose.
     PoorFit {
         /// The view's number, in the order of the cameras.
@@ -99,12 +107,21 @@ pub enum FitDoubt {
     },
 }
 
+impl From<Mistake> for FitDoubt {
+    fn from(mistake: Mistake) -> Self {
+        match mistake {
+            Mistake::OtherSide => Self::OtherSide,
+            Mistake::Exchanged(views) => Self::Exchanged { views },
+        }
+    }
+}
+
 /// What frames are reported with.
 pub(super) struct Reporter<'a> {
     pub(super) cameras: &'a [Camera],
     /// Fits with the hand, its views weighted as their borders are known.
     pub(super) fitter: &'a FrameFitter<'a>,
-    pub(super) hand: &'a KnownHand,
+    pub(super) known: &'a Known,
     pub(super) rest: DAffine3,
 }
 
@@ -114,11 +131,11 @@ impl Reporter<'_> {
         let (fitter, hand) = (self.fitter, self.fitter.hand);
         let pose = found.pose_in(&self.rest, hand);
         let joints = hand.pose(&pose, &self.rest).joints;
-        let mut doubts = Vec::new();
+        let mut doubts = Vec::from_iter(self.known.mistake.map(FitDoubt::from));
         let silhouettes = fitter.silhouettes(found);
         let agreements = views::agreements(fitter, found, &silhouettes)?;
         let posterior =
-            fitter.posterior(found, silhouettes, &self.hand.std)?.unwrap_or_else(|| {
+            fitter.posterior(found, silhouettes, &self.known.hand.std)?.unwrap_or_else(|| {
                 doubts.push(FitDoubt::Open);
                 Posterior { std: [f64::INFINITY; Dof::COUNT], joints: [f64::INFINITY; JOINTS] }
             });

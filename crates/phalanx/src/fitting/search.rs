@@ -15,7 +15,7 @@ use crate::localize::{HandCrop, Placement};
 
 /// Palm directions about the forearm that are tried where none is known: 45° apart, half of which steps
 /// make up for.
-const TURNS: usize = 8;
+pub(super) const TURNS: usize = 8;
 
 /// Of the guesses where a hand may be so many are followed, and of the palm directions of each.
 const GUESSES: usize = 2;

@@ -29,7 +29,7 @@ const SAME_PLACE: f64 = std::f64::consts::FRAC_PI_8;
 /// # Errors
 /// Another number of masks or landmarks than cameras, or no camera that sees a hand.
 pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Result<FrameFit> {
-    let Known { hand, weights } = &take.known;
+    let Known { hand, weights, .. } = &take.known;
     let prior = starts::pose_prior()?;
     let fitter =
         |refinement, weights| FrameFitter { hand: &hand.shape, prior: &prior, refinement, weights };
@@ -61,7 +61,7 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
         }
     }
     let fitter = &fitter(&coarse, weights.clone());
-    Reporter { cameras, fitter, hand, rest }.report(&found)
+    Reporter { cameras, fitter, known: &take.known, rest }.report(&found)
 }
 
 /// Frames of a take's hand that differ from each other most, the first being the take's middle.

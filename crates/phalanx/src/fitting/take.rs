@@ -12,6 +12,7 @@ use super::found::Found;
 use super::frame_fit::{FrameFitter, WORTH_ANOTHER};
 use super::knowledge::ViewKnowledge;
 use super::misfit;
+use super::mistake::{self, Mistake};
 use super::observation::fitted_hand;
 use super::passes;
 use super::proportions::{self, HandEvidence, KnownHand};
@@ -69,12 +70,15 @@ pub(super) struct Known {
     pub(super) hand: KnownHand,
     /// How much what each view shows counts.
     pub(super) weights: ViewWeights,
+    /// What seems mistaken about hand and cameras.
+    pub(super) mistake: Option<Mistake>,
 }
 
 impl Known {
     /// Of a hand and of views of which nothing is known.
     pub(super) fn nothing(hand: &HandShape, views: usize) -> Self {
-        Self { hand: KnownHand::anyone(hand), weights: ViewWeights::unknown(views) }
+        let weights = ViewWeights::unknown(views);
+        Self { hand: KnownHand::anyone(hand), weights, mistake: None }
     }
 }
 
@@ -113,10 +117,12 @@ pub fn fit_take(
     }
     let Around { take, middle, found } = best.ok_or(Error::NoHand)?;
     let volume = VolumeEstimate::around(&middle, found.iter().flatten(), &take.hand.shape);
-    let frames = take.reports(&found, &volume.volume)?;
+    let searching = FrameFitter { refinement: &refinement, ..take.fitter(Weights::Relative) };
+    let mistake = mistake::of_take(&searching, cameras, frames, &found, progress)?;
+    let known = Known { hand: take.hand.clone(), weights: take.weights.clone(), mistake };
+    let frames = take.reports(&found, &known, &volume.volume)?;
     let forearm = settings.hand.forearm.clone();
     let hand = HandShape { forearm, ..take.hand.shape.clone() };
-    let known = Known { hand: take.hand, weights: take.weights };
     Ok(TakeFit { hand, volume, frames, known })
 }
 
@@ -308,10 +314,15 @@ impl<'a> Take<'a> {
     }
 
     /// The report of every frame.
-    fn reports(&self, found: &[Option<Found>], volume: &Volume) -> Result<Vec<FrameFit>> {
+    fn reports(
+        &self,
+        found: &[Option<Found>],
+        known: &Known,
+        volume: &Volume,
+    ) -> Result<Vec<FrameFit>> {
         let rest: DAffine3 = volume.rest_frame();
         let fitter = &self.fitter(Weights::Absolute);
-        let reporter = Reporter { cameras: self.cameras, fitter, hand: &self.hand, rest };
+        let reporter = Reporter { cameras: self.cameras, fitter, known, rest };
         let report =
             |found: &Option<Found>| found.as_ref().map(|own| reporter.report(own)).transpose();
         let seen: Vec<Option<FrameFit>> = found.par_iter().map(report).collect::<Result<_>>()?;

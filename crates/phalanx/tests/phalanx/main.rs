@@ -6,6 +6,7 @@ mod drawn;
 mod estimator;
 mod golden;
 mod landmarks;
+mod mistaken;
 #[path = "../property/mod.rs"]
 mod property;
 mod sizes;

@@ -23,6 +23,7 @@ use crate::error::{Error, Result};
 use crate::fitting::found::Found;
 use crate::fitting::frame_fit::FrameFitter;
 use crate::fitting::knowledge::ViewKnowledge;
+use crate::fitting::mistake::{self, Mistake};
 use crate::fitting::observation::fitted_hand;
 use crate::fitting::proportions::{HandEvidence, KnownHand};
 use crate::fitting::report::{FrameFit, Reporter};
@@ -316,6 +317,10 @@ impl Tracker {
         if let Some(learnt) = learnt {
             self.known.hand = learnt;
         }
+        let searching = self.fitter(&self.searching);
+        if mistake::is_other_side(&searching, own_hand.kept(), &NoProgress)? {
+            self.known.mistake = Some(Mistake::OtherSide);
+        }
         Ok(())
     }
 
@@ -340,9 +345,10 @@ impl Tracker {
         let (Some(motion), Some(rest)) = (motion, self.rest) else {
             return Ok(TrackedFrame { time: *time, fit: None });
         };
-        let Known { hand, weights } = &self.known;
-        let fitter = &FrameFitter { weights: weights.clone(), ..self.fitter(&self.searching) };
-        let reporter = Reporter { cameras: &self.cameras, fitter, hand, rest };
+        let known = &self.known;
+        let fitter =
+            &FrameFitter { weights: known.weights.clone(), ..self.fitter(&self.searching) };
+        let reporter = Reporter { cameras: &self.cameras, fitter, known, rest };
         let fit = match found {
             Some(found) => reporter.report(found)?,
             None => reporter.unseen(&motion.pose, &motion.rest),

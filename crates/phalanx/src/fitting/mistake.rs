@@ -1,0 +1,145 @@
+//! What may be mistaken about a whole take: the hand is the person's other one, or two cameras have each other's pictures. A
+//! wrong hand, or a right one before wrong cameras, fits most silhouettes halfway, so that no frame need contradict it.
+
+use phalanx_camera::Camera;
+use phalanx_hand::{Dof, HandShape, Pose};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::consensus::evenly;
+use super::found::{Found, views_used};
+use super::frame_fit::FrameFitter;
+use super::misfit;
+use super::observation::Sight;
+use super::search::{self, TURNS};
+use super::starts;
+use super::take_frame::TakeFrame;
+use super::views;
+use super::weights::ViewWeights;
+use crate::error::Result;
+use crate::progress::Progress;
+
+/// What is mistaken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Mistake {
+    /// The hand is of the other side.
+    OtherSide,
+    /// Each of two cameras has the pictures of the other.
+    Exchanged([usize; 2]),
+}
+
+/// Frames that are asked first, and frames that are asked if one of these says yes.
+const FIRST: usize = 4;
+const FRAMES: usize = 12;
+
+/// Of so many cameras every two may be exchanged; of more, asking takes too long.
+const CAMERAS: usize = 4;
+
+/// What is mistaken about cameras and hand of a take, whose frames were fitted to `found`.
+pub(super) fn of_take(
+    fitter: &FrameFitter<'_>,
+    cameras: &[Camera],
+    frames: &[TakeFrame],
+    found: &[Option<Found>],
+    progress: &dyn Progress,
+) -> Result<Option<Mistake>> {
+    if is_other_side(fitter, found, progress)? {
+        return Ok(Some(Mistake::OtherSide));
+    }
+    let views = if cameras.len() > CAMERAS { 0 } else { cameras.len() };
+    for pair in (0..views).flat_map(|one| (0..one).map(move |other| [other, one])) {
+        let other = |fitter: &FrameFitter<'_>, k: usize, _: &Found| {
+            of_exchanged(fitter, cameras, &frames[k], pair)
+        };
+        if is_better(fitter, found, other, progress)? {
+            return Ok(Some(Mistake::Exchanged(pair)));
+        }
+    }
+    Ok(None)
+}
+
+/// Whether a hand of the other side agrees better with most frames. Two cameras that look at each other, or along the
+/// fingers, hardly tell; one camera does not.
+pub(super) fn is_other_side(
+    fitter: &FrameFitter<'_>,
+    found: &[Option<Found>],
+    progress: &dyn Progress,
+) -> Result<bool> {
+    is_better(fitter, found, |fitter, _, own| of_other_side(fitter, own), progress)
+}
+
+/// Whether another explanation, of which `other` says how far it is from agreeing with a frame, agrees better with most
+/// frames than they do with their fits. It is looked for once in each, and fits were in many ways, so that right fits
+/// are far from being doubted.
+fn is_better(
+    fitter: &FrameFitter<'_>,
+    found: &[Option<Found>],
+    other: impl Fn(&FrameFitter<'_>, usize, &Found) -> Result<f64> + Sync,
+    progress: &dyn Progress,
+) -> Result<bool> {
+    // A view that was wrong may be right then.
+    let weights = ViewWeights::unknown(fitter.weights.wrong.len());
+    let fitter = &FrameFitter { weights, ..*fitter };
+    let told = (0..found.len()).filter_map(|k| Some((k, found[k].as_ref()?)));
+    let told: Vec<_> = told.filter(|(_, found)| found.cameras_used() > 1).collect();
+    let better = |frames: usize| -> Result<usize> {
+        let chosen = evenly(told.len(), frames);
+        progress.begin("ask what may be mistaken", chosen.len());
+        let is_better = |&k: &usize| -> Result<bool> {
+            let (frame, own) = told[k];
+            let is_better = other(fitter, frame, own)? < far(fitter, own)?;
+            progress.step();
+            Ok(is_better)
+        };
+        let better: Vec<bool> = chosen.par_iter().map(is_better).collect::<Result<_>>()?;
+        Ok(better.into_iter().filter(|is| *is).count())
+    };
+    Ok(told.len() >= FIRST && better(FIRST)? > 0 && 2 * better(FRAMES)? > FRAMES.min(told.len()))
+}
+
+/// How far views are from agreeing with a frame on average, also those that were left out of it. None counts for more than
+/// one that just contradicts it, nor does one that shows nothing count for less.
+fn far(fitter: &FrameFitter<'_>, found: &Found) -> Result<f64> {
+    let all = views::misfits(fitter, found)?;
+    let (masks, points) = all.split_at(found.crops.len());
+    let masks = masks.iter().map(|far| far.unwrap_or(1.0));
+    let all: Vec<f64> =
+        masks.chain(points.iter().flatten().copied()).map(|far| far.min(1.0)).collect();
+    Ok(all.iter().sum::<f64>() / all.len() as f64)
+}
+
+/// How far they are from agreeing with a hand of the other side whose arm is where the frame has it.
+fn of_other_side(fitter: &FrameFitter<'_>, own: &Found) -> Result<f64> {
+    let rest = own.frame(fitter.hand);
+    let hand = &HandShape { side: fitter.hand.side.other(), ..fitter.hand.clone() };
+    let fitter = &FrameFitter { hand, weights: fitter.weights.clone(), ..*fitter };
+    let left_out = vec![false; own.left_out.len()];
+    let evidence = fitter.seen(&own.crops, &own.points, &left_out, &rest);
+    let turned = (0..TURNS).flat_map(|turn| {
+        let mut pose = Pose::REST;
+        pose[Dof::ThetaZ] = std::f64::consts::TAU * turn as f64 / TURNS as f64;
+        starts::postures(&pose)
+    });
+    let fits = fitter.fits(&rest, &evidence, &turned.collect::<Vec<_>>())?;
+    let Some(refined) = fits.into_iter().next() else { return Ok(f64::INFINITY) };
+    let misfit = misfit::of_fit(&refined, views_used(&own.crops, &own.points, &left_out));
+    far(fitter, &fitter.improved(Found { rest, refined, left_out, misfit, ..own.clone() })?)
+}
+
+/// How far they are from agreeing with the hand anywhere, if two cameras' pictures are exchanged.
+fn of_exchanged(
+    fitter: &FrameFitter<'_>,
+    cameras: &[Camera],
+    frame: &TakeFrame,
+    [one, other]: [usize; 2],
+) -> Result<f64> {
+    let mut frame = frame.clone();
+    frame.masks.swap(one, other);
+    if !frame.landmarks.is_empty() {
+        frame.landmarks.swap(one, other);
+    }
+    match search::known_anywhere(fitter, &Sight::of(cameras, &frame)?)? {
+        Some(found) => far(fitter, &fitter.improved(found)?),
+        None => Ok(f64::INFINITY),
+    }
+}
