@@ -69,16 +69,17 @@ impl Tally {
             eprintln!("phalanx: and {} more", failures - named.len());
         }
         ensure!(*with_hand > 0, "no frame shows a hand");
-        for remedy in doubts.iter().filter_map(|code| doubt::remedy(code, hand.side)) {
+        let remedy = doubts.iter().find_map(|code| doubt::remedy(code, hand.side));
+        if let Some(remedy) = &remedy {
             eprintln!("phalanx: {remedy}");
         }
         if *with_fewer > 0 {
             let fewer = counted(*with_fewer, "frame");
             eprintln!("phalanx: in {fewer} a view was left out (column `left_out`)");
         }
-        for (camera, &without) in
-            cameras.iter().zip(without).filter(|(_, without)| 2 * **without > *frames)
-        {
+        // A right camera may be left out for the sake of those that are exchanged.
+        let is_left_out = |&(_, &without): &(_, &usize)| remedy.is_none() && 2 * without > *frames;
+        for (camera, &without) in cameras.iter().zip(without).filter(is_left_out) {
             eprintln!(
                 "phalanx: camera '{}' was left out of {without} of {}: was it moved or exchanged with \
                  another, are its frames of other moments, or does it not see the hand? `phalanx doctor` looks",

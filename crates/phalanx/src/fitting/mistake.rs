@@ -35,7 +35,8 @@ const FRAMES: usize = 12;
 /// Of so many cameras every two may be exchanged; of more, asking takes too long.
 const CAMERAS: usize = 4;
 
-/// What is mistaken about cameras and hand of a take, whose frames were fitted to `found`.
+/// What is mistaken about cameras and hand of a take, whose frames were fitted to `found`: what agrees best of what agrees
+/// better than the fits.
 pub(super) fn of_take(
     fitter: &FrameFitter<'_>,
     cameras: &[Camera],
@@ -43,19 +44,20 @@ pub(super) fn of_take(
     found: &[Option<Found>],
     progress: &dyn Progress,
 ) -> Result<Option<Mistake>> {
-    if is_other_side(fitter, found, progress)? {
-        return Ok(Some(Mistake::OtherSide));
-    }
+    let other_side = |fitter: &FrameFitter<'_>, _: usize, own: &Found| of_other_side(fitter, own);
+    let far = if_better(fitter, found, other_side, progress)?;
+    let mut likeliest = far.map(|far| (far, Mistake::OtherSide));
     let views = if cameras.len() > CAMERAS { 0 } else { cameras.len() };
     for pair in (0..views).flat_map(|one| (0..one).map(move |other| [other, one])) {
-        let other = |fitter: &FrameFitter<'_>, k: usize, _: &Found| {
+        let exchanged = |fitter: &FrameFitter<'_>, k: usize, _: &Found| {
             of_exchanged(fitter, cameras, &frames[k], pair)
         };
-        if is_better(fitter, found, other, progress)? {
-            return Ok(Some(Mistake::Exchanged(pair)));
+        let Some(far) = if_better(fitter, found, exchanged, progress)? else { continue };
+        if likeliest.is_none_or(|(least, _)| far < least) {
+            likeliest = Some((far, Mistake::Exchanged(pair)));
         }
     }
-    Ok(None)
+    Ok(likeliest.map(|(_, mistake)| mistake))
 }
 
 /// Whether a hand of the other side agrees better with most frames. Two cameras that look at each other, or along the
@@ -65,36 +67,43 @@ pub(super) fn is_other_side(
     found: &[Option<Found>],
     progress: &dyn Progress,
 ) -> Result<bool> {
-    is_better(fitter, found, |fitter, _, own| of_other_side(fitter, own), progress)
+    let other_side = |fitter: &FrameFitter<'_>, _: usize, own: &Found| of_other_side(fitter, own);
+    Ok(if_better(fitter, found, other_side, progress)?.is_some())
 }
 
-/// Whether another explanation, of which `other` says how far it is from agreeing with a frame, agrees better with most
-/// frames than they do with their fits. It is looked for once in each, and fits were in many ways, so that right fits
+/// How far another explanation is from agreeing with some frames on average, by what `other` says of each, if it agrees better
+/// with most of them than their fits do. It is looked for once in each, and fits were in many ways, so that right fits
 /// are far from being doubted.
-fn is_better(
+fn if_better(
     fitter: &FrameFitter<'_>,
     found: &[Option<Found>],
     other: impl Fn(&FrameFitter<'_>, usize, &Found) -> Result<f64> + Sync,
     progress: &dyn Progress,
-) -> Result<bool> {
+) -> Result<Option<f64>> {
     // A view that was wrong may be right then.
     let weights = ViewWeights::unknown(fitter.weights.wrong.len());
     let fitter = &FrameFitter { weights, ..*fitter };
     let told = (0..found.len()).filter_map(|k| Some((k, found[k].as_ref()?)));
     let told: Vec<_> = told.filter(|(_, found)| found.cameras_used() > 1).collect();
-    let better = |frames: usize| -> Result<usize> {
+    // The other explanation of so many frames, and the frames' own.
+    let asked = |frames: usize| -> Result<Vec<[f64; 2]>> {
         let chosen = evenly(told.len(), frames);
         progress.begin("ask what may be mistaken", chosen.len());
-        let is_better = |&k: &usize| -> Result<bool> {
+        let ask = |&k: &usize| {
             let (frame, own) = told[k];
-            let is_better = other(fitter, frame, own)? < far(fitter, own)?;
+            let asked = [other(fitter, frame, own)?, far(fitter, own)?];
             progress.step();
-            Ok(is_better)
+            Ok(asked)
         };
-        let better: Vec<bool> = chosen.par_iter().map(is_better).collect::<Result<_>>()?;
-        Ok(better.into_iter().filter(|is| *is).count())
+        chosen.par_iter().map(ask).collect()
     };
-    Ok(told.len() >= FIRST && better(FIRST)? > 0 && 2 * better(FRAMES)? > FRAMES.min(told.len()))
+    let better = |asked: &[[f64; 2]]| asked.iter().filter(|[other, own]| other < own).count();
+    if told.len() < FIRST || better(&asked(FIRST)?) == 0 {
+        return Ok(None);
+    }
+    let asked = asked(FRAMES)?;
+    let sum: f64 = asked.iter().map(|[other, _]| other).sum();
+    Ok((2 * better(&asked) > asked.len()).then(|| sum / asked.len() as f64))
 }
 
 /// How far views are from agreeing with a frame on average, also those that were left out of it. None counts for more than
