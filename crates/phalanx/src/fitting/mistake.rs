@@ -44,11 +44,9 @@ pub(super) fn of_take(
     found: &[Option<Found>],
     progress: &dyn Progress,
 ) -> Result<Option<Mistake>> {
-    let other_side = |fitter: &FrameFitter<'_>, _: usize, own: &Found| of_other_side(fitter, own);
-    let far = if_better(fitter, found, other_side, progress)?;
+    let far = if_better(fitter, found, of_other_side, progress)?;
     let mut likeliest = far.map(|far| (far, Mistake::OtherSide));
-    let views = if cameras.len() > CAMERAS { 0 } else { cameras.len() };
-    for pair in (0..views).flat_map(|one| (0..one).map(move |other| [other, one])) {
+    for pair in exchangeable(fitter, cameras.len(), found)? {
         let exchanged = |fitter: &FrameFitter<'_>, k: usize, _: &Found| {
             of_exchanged(fitter, cameras, &frames[k], pair)
         };
@@ -60,6 +58,29 @@ pub(super) fn of_take(
     Ok(likeliest.map(|(_, mistake)| mistake))
 }
 
+/// The pairs of cameras that may be exchanged: all, or none where most views agree with their frames, which those before
+/// wrong cameras do not.
+fn exchangeable(
+    fitter: &FrameFitter<'_>,
+    cameras: usize,
+    found: &[Option<Found>],
+) -> Result<Vec<[usize; 2]>> {
+    let told = told(found);
+    let own = evenly(told.len(), FRAMES).into_iter().map(|k| far(fitter, told[k].1));
+    let mut own: Vec<f64> = own.collect::<Result<_>>()?;
+    own.sort_by(f64::total_cmp);
+    if cameras > CAMERAS || own.get(own.len() / 2).is_none_or(|far| *far < misfit::BEGINS) {
+        return Ok(Vec::new());
+    }
+    Ok((0..cameras).flat_map(|one| (0..one).map(move |other| [other, one])).collect())
+}
+
+/// The frames that two cameras or more were used of, with their numbers.
+fn told(found: &[Option<Found>]) -> Vec<(usize, &Found)> {
+    let fitted = (0..found.len()).filter_map(|k| Some((k, found[k].as_ref()?)));
+    fitted.filter(|(_, found)| found.cameras_used() > 1).collect()
+}
+
 /// Whether a hand of the other side agrees better with most frames. Two cameras that look at each other, or along the
 /// fingers, hardly tell; one camera does not.
 pub(super) fn is_other_side(
@@ -67,8 +88,7 @@ pub(super) fn is_other_side(
     found: &[Option<Found>],
     progress: &dyn Progress,
 ) -> Result<bool> {
-    let other_side = |fitter: &FrameFitter<'_>, _: usize, own: &Found| of_other_side(fitter, own);
-    Ok(if_better(fitter, found, other_side, progress)?.is_some())
+    Ok(if_better(fitter, found, of_other_side, progress)?.is_some())
 }
 
 /// How far another explanation is from agreeing with some frames on average, by what `other` says of each, if it agrees better
@@ -83,8 +103,7 @@ fn if_better(
     // A view that was wrong may be right then.
     let weights = ViewWeights::unknown(fitter.weights.wrong.len());
     let fitter = &FrameFitter { weights, ..*fitter };
-    let told = (0..found.len()).filter_map(|k| Some((k, found[k].as_ref()?)));
-    let told: Vec<_> = told.filter(|(_, found)| found.cameras_used() > 1).collect();
+    let told = told(found);
     // The other explanation of so many frames, and the frames' own.
     let asked = |frames: usize| -> Result<Vec<[f64; 2]>> {
         let chosen = evenly(told.len(), frames);
@@ -118,7 +137,7 @@ fn far(fitter: &FrameFitter<'_>, found: &Found) -> Result<f64> {
 }
 
 /// How far they are from agreeing with a hand of the other side whose arm is where the frame has it.
-fn of_other_side(fitter: &FrameFitter<'_>, own: &Found) -> Result<f64> {
+fn of_other_side(fitter: &FrameFitter<'_>, _: usize, own: &Found) -> Result<f64> {
     let rest = own.frame(fitter.hand);
     let hand = &HandShape { side: fitter.hand.side.other(), ..fitter.hand.clone() };
     let fitter = &FrameFitter { hand, weights: fitter.weights.clone(), ..*fitter };
