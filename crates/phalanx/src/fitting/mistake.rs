@@ -58,8 +58,8 @@ pub(super) fn of_take(
     Ok(likeliest.map(|(_, mistake)| mistake))
 }
 
-/// The pairs of cameras that may be exchanged: all, or none where most views agree with their frames, which those before
-/// wrong cameras do not.
+/// The pairs of cameras that may be exchanged: all, or none where views agree with three quarters of the frames, which
+/// those before wrong cameras do not.
 fn exchangeable(
     fitter: &FrameFitter<'_>,
     cameras: usize,
@@ -69,7 +69,7 @@ fn exchangeable(
     let own = evenly(told.len(), FRAMES).into_iter().map(|k| far(fitter, told[k].1));
     let mut own: Vec<f64> = own.collect::<Result<_>>()?;
     own.sort_by(f64::total_cmp);
-    if cameras > CAMERAS || own.get(own.len() / 2).is_none_or(|far| *far < misfit::BEGINS) {
+    if cameras > CAMERAS || own.get(3 * own.len() / 4).is_none_or(|far| *far < misfit::BEGINS) {
         return Ok(Vec::new());
     }
     Ok((0..cameras).flat_map(|one| (0..one).map(move |other| [other, one])).collect())
