@@ -15,6 +15,7 @@ pub mod landmarks;
 pub mod lose;
 pub mod method;
 pub mod methods;
+pub mod mistake;
 pub mod overlap;
 pub mod per_frame;
 pub mod product;
@@ -46,6 +47,7 @@ use frame::{FrameName, FrameRanges};
 use lose::Lose;
 use method::{Landmarks, Method, Outcome, Sequence};
 use methods::{MethodName, Prepared};
+use mistake::Mistake;
 use reference::Reference;
 use report::Line;
 use row::Row;
@@ -82,6 +84,10 @@ pub struct Arguments {
     /// joins the hand), thumb (alone), other (the mask of another frame), nothing.
     #[arg(long, value_name = "KIND:CAMERA")]
     spoil: Option<Spoil>,
+    /// Mistake a whole take: other-side for a hand that is taken for one of the other side, exchanged:CAMERA+CAMERA for
+    /// cameras that have each other's pictures.
+    #[arg(long, value_name = "WHAT")]
+    mistake: Option<Mistake>,
     /// Look at no landmarks of this camera, which then tests those of the others.
     #[arg(long, value_name = "CAMERA")]
     without_landmarks: Option<String>,
@@ -113,7 +119,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let folders = take::chosen_in(&arguments.data, &arguments.take)?;
     let (mut rows, mut notes) = (Reported::default(), Vec::new());
     for folder in &folders {
-        let take = Take::read(folder)?;
+        let mut take = Take::read(folder)?;
+        if let Some(mistake) = &arguments.mistake {
+            mistake.make(&mut take)?;
+        }
         let reference = Reference::read(folder, &take.camera_names())?;
         let bar = progress::Bar::new();
         let evaluation = Evaluation {
