@@ -18,6 +18,7 @@ pub enum Side {
 
 impl Side {
     /// That of the person's other hand.
+    #[must_use]
     pub fn other(self) -> Self {
         match self {
             Self::Right => Self::Left,

@@ -71,7 +71,8 @@ fn exchangeable(
     found: &[Option<Found>],
 ) -> Result<Vec<[usize; 2]>> {
     let told = told(found);
-    let own = evenly(told.len(), FRAMES).into_iter().map(|k| far(fitter, told[k].1));
+    let own = |k: usize| Ok(mean(&far(fitter, told[k].1)?));
+    let own = evenly(told.len(), FRAMES).into_iter().map(own);
     let mut own: Vec<f64> = own.collect::<Result<_>>()?;
     own.sort_by(f64::total_cmp);
     if cameras > CAMERAS || own.get(3 * own.len() / 4).is_none_or(|far| *far < misfit::BEGINS) {
@@ -96,12 +97,12 @@ pub(super) fn is_other_side(
     Ok(if_better(fitter, found, of_other_side, progress)?.is_some())
 }
 
-/// How far another explanation is from agreeing with some frames on average, by what `other` says of each, if it is the better
-/// one of most of them.
+/// How far another explanation is from agreeing with some frames on average, by how far `other` says that the views of each
+/// are, if it is the better one of most of them.
 fn if_better(
     fitter: &FrameFitter<'_>,
     found: &[Option<Found>],
-    other: impl Fn(&FrameFitter<'_>, usize, &Found) -> Result<f64> + Sync,
+    other: impl Fn(&FrameFitter<'_>, usize, &Found) -> Result<Vec<f64>> + Sync,
     progress: &dyn Progress,
 ) -> Result<Option<f64>> {
     // A view that was wrong may be right then.
@@ -111,12 +112,15 @@ fn if_better(
     // The other explanation of so many frames, and the frames' own.
     let asked = |frames: usize| -> Result<Vec<[f64; 2]>> {
         let chosen = evenly(told.len(), frames);
-        progress.begin("ask what may be mistaken", chosen.len());
+        progress.begin("check side and cameras", chosen.len());
         let ask = |&k: &usize| {
             let (frame, own) = told[k];
-            let asked = [other(fitter, frame, own)?, far(fitter, own)?];
+            let [mut other, mut own] = [other(fitter, frame, own)?, far(fitter, own)?];
+            // A view that shows nothing there contradicts it.
+            let views = other.len().max(own.len());
+            [&mut other, &mut own].map(|far| far.resize(views, 1.0));
             progress.step();
-            Ok(asked)
+            Ok([mean(&other), mean(&own)])
         };
         chosen.par_iter().map(ask).collect()
     };
@@ -130,19 +134,18 @@ fn if_better(
     Ok((2 * better(&asked) > asked.len()).then(|| sum / asked.len() as f64))
 }
 
-/// How far views are from agreeing with a frame on average, also those that were left out of it. None counts for more than
-/// one that just contradicts it, nor does one that shows nothing count for less.
-fn far(fitter: &FrameFitter<'_>, found: &Found) -> Result<f64> {
-    let all = views::misfits(fitter, found)?;
-    let (masks, points) = all.split_at(found.crops.len());
-    let masks = masks.iter().map(|far| far.unwrap_or(1.0));
-    let all: Vec<f64> =
-        masks.chain(points.iter().flatten().copied()).map(|far| far.min(1.0)).collect();
-    Ok(all.iter().sum::<f64>() / all.len() as f64)
+/// How far each view that shows anything is from agreeing with a frame, also if it was left out of it. None counts for more than
+/// one that just contradicts it.
+fn far(fitter: &FrameFitter<'_>, found: &Found) -> Result<Vec<f64>> {
+    Ok(views::misfits(fitter, found)?.into_iter().flatten().map(|far| far.min(1.0)).collect())
 }
 
-/// How far they are from agreeing with a hand of the other side whose arm is where the frame has it.
-fn of_other_side(fitter: &FrameFitter<'_>, _: usize, own: &Found) -> Result<f64> {
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// How far views are from agreeing with a hand of the other side whose arm is where the frame has it.
+fn of_other_side(fitter: &FrameFitter<'_>, _: usize, own: &Found) -> Result<Vec<f64>> {
     let rest = own.frame(fitter.hand);
     let hand = &HandShape { side: fitter.hand.side.other(), ..fitter.hand.clone() };
     let fitter = &FrameFitter { hand, weights: fitter.weights.clone(), ..*fitter };
@@ -154,7 +157,7 @@ fn of_other_side(fitter: &FrameFitter<'_>, _: usize, own: &Found) -> Result<f64>
         starts::postures(&pose)
     });
     let fits = fitter.fits(&rest, &evidence, &turned.collect::<Vec<_>>())?;
-    let Some(refined) = fits.into_iter().next() else { return Ok(f64::INFINITY) };
+    let Some(refined) = fits.into_iter().next() else { return Ok(Vec::new()) };
     let misfit = misfit::of_fit(&refined, views_used(&own.crops, &own.points, &left_out));
     far(fitter, &fitter.improved(Found { rest, refined, left_out, misfit, ..own.clone() })?)
 }
@@ -165,7 +168,7 @@ fn of_exchanged(
     cameras: &[Camera],
     frame: &TakeFrame,
     [one, other]: [usize; 2],
-) -> Result<f64> {
+) -> Result<Vec<f64>> {
     let mut frame = frame.clone();
     frame.masks.swap(one, other);
     if !frame.landmarks.is_empty() {
@@ -173,6 +176,6 @@ fn of_exchanged(
     }
     match search::known_anywhere(fitter, &Sight::of(cameras, &frame)?)? {
         Some(found) => far(fitter, &fitter.improved(found)?),
-        None => Ok(f64::INFINITY),
+        None => Ok(Vec::new()),
     }
 }
