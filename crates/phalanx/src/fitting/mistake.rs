@@ -118,7 +118,8 @@ fn if_better(
             let [mut other, mut own] = [other(fitter, frame, own)?, far(fitter, own)?];
             // A view that shows nothing there contradicts it.
             let views = other.len().max(own.len());
-            [&mut other, &mut own].map(|far| far.resize(views, 1.0));
+            other.resize(views, 1.0);
+            own.resize(views, 1.0);
             progress.step();
             Ok([mean(&other), mean(&own)])
         };
