@@ -17,8 +17,8 @@ pub(crate) fn named(camera: &Camera) -> String {
 pub(crate) fn findings(source: &Source, fit: &TakeFit) -> Vec<Finding> {
     let cameras = &source.cameras;
     let doubts = fit.frames.first().map_or(&[][..], |frame| &frame.doubts);
-    let codes = doubts.iter().map(|doubt| doubt::code(doubt, cameras));
-    if let Some(remedy) = codes.filter_map(|code| doubt::remedy(&code, fit.hand.side)).next() {
+    let mut codes = doubts.iter().map(|doubt| doubt::code(doubt, cameras));
+    if let Some(remedy) = codes.find_map(|code| doubt::remedy(&code, fit.hand.side)) {
         return vec![Finding::broken("recording", remedy)];
     }
     (0..cameras.len()).map(|view| agreement(source, view, fit)).collect()
