@@ -16,8 +16,8 @@ pub(crate) fn named(camera: &Camera) -> String {
 /// What a fitted hand says of a recording: what is mistaken about all of it, else how well each camera agrees.
 pub(crate) fn findings(source: &Source, fit: &TakeFit) -> Vec<Finding> {
     let cameras = &source.cameras;
-    let doubts = fit.frames.first().map_or(&[][..], |frame| &frame.doubts);
-    let mut codes = doubts.iter().map(|doubt| doubt::code(doubt, cameras));
+    let doubts = fit.frames.iter().flat_map(|frame| &frame.doubts);
+    let mut codes = doubts.map(|doubt| doubt::code(doubt, cameras));
     if let Some(remedy) = codes.find_map(|code| doubt::remedy(&code, fit.hand.side)) {
         return vec![Finding::broken("recording", remedy)];
     }

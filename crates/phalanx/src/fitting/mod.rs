@@ -11,6 +11,7 @@ mod flesh;
 mod found;
 mod frame_fit;
 mod knowledge;
+mod known;
 mod misfit;
 mod mistake;
 mod motion;

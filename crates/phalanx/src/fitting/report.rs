@@ -8,10 +8,10 @@ use phalanx_refine::{Agreement, Posterior};
 use super::flesh;
 use super::found::Found;
 use super::frame_fit::FrameFitter;
+use super::known::Known;
 use super::misfit;
 use super::mistake::Mistake;
 use super::starts;
-use super::take::Known;
 use super::views;
 use crate::error::Result;
 

@@ -5,14 +5,14 @@ use phalanx_camera::{Camera, Volume};
 use phalanx_hand::HandShape;
 use phalanx_refine::{PoseFitSettings, PosePrior};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use super::consensus::{self, VolumeEstimate};
 use super::found::Found;
 use super::frame_fit::{FrameFitter, WORTH_ANOTHER};
 use super::knowledge::ViewKnowledge;
+use super::known::Known;
 use super::misfit;
-use super::mistake::{self, Mistake};
+use super::mistake;
 use super::observation::fitted_hand;
 use super::passes;
 use super::proportions::{self, HandEvidence, KnownHand};
@@ -62,24 +62,6 @@ pub struct TakeFit {
     /// Frame by frame.
     pub frames: Vec<FrameFit>,
     pub(super) known: Known,
-}
-
-/// What a take tells of its hand and its cameras, besides poses.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Known {
-    pub(super) hand: KnownHand,
-    /// How much what each view shows counts.
-    pub(super) weights: ViewWeights,
-    /// What seems mistaken about hand and cameras.
-    pub(super) mistake: Option<Mistake>,
-}
-
-impl Known {
-    /// Of a hand and of views of which nothing is known.
-    pub(super) fn nothing(hand: &HandShape, views: usize) -> Self {
-        let weights = ViewWeights::unknown(views);
-        Self { hand: KnownHand::anyone(hand), weights, mistake: None }
-    }
 }
 
 /// How often the hand is learnt at most, each time from frames fitted with it as it was before: a finger that was

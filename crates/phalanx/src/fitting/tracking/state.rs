@@ -7,7 +7,7 @@ use super::delay::Delay;
 use super::motion::Motion;
 use super::noise::MotionNoise;
 use super::recent::Recent;
-use crate::fitting::take::Known;
+use crate::fitting::known::Known;
 
 /// What a [`Tracker`](super::Tracker) knows after a frame, some 30 kB as bytes: all that its later answers depend
 /// on but what that frame showed.
