@@ -35,7 +35,7 @@ pub(crate) fn remedy(code: &str, side: Side) -> Option<String> {
     }
     let (one, other) = code.strip_prefix(EXCHANGED)?.split_once('+')?;
     Some(format!(
-        "the cameras {one} and {other} seem to have each other's pictures: name each camera's, as {one}=PATH"
+        "the cameras {one} and {other} seem to have each other's pictures: say whose each recording is, as in {one}=PATH"
     ))
 }
 
