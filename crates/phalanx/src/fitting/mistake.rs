@@ -87,8 +87,8 @@ fn told(found: &[Option<Found>]) -> Vec<(usize, &Found)> {
     fitted.filter(|(_, found)| found.cameras_used() > 1).collect()
 }
 
-/// Whether a hand of the other side agrees better with most frames. Two cameras that look at each other, or along the
-/// fingers, hardly tell; one camera does not.
+/// Whether a hand of the other side is the better explanation of most frames. Two cameras do not always tell, and one
+/// never does.
 pub(super) fn is_other_side(
     fitter: &FrameFitter<'_>,
     found: &[Option<Found>],

@@ -72,7 +72,8 @@ const ROUNDS: usize = 4;
 ///
 /// Frames are in the order of time, and may be further apart in some places than in others where they say when they
 /// were ([`TakeFrame::at`]); without times they follow each other at one pace. Nothing else is needed; the same
-/// frames give the same fit, at any number of threads.
+/// frames give the same fit, at any number of threads. If the hand seems to be of the other side, or two cameras to have
+/// each other's pictures, every frame is doubted.
 ///
 /// # Errors
 /// Frames with another number of masks or landmarks than cameras or not in the order of time, or no frame in which
