@@ -88,6 +88,9 @@ impl Covered {
         let apart = without_connected(Mask::from_fn(width, height, seen), |x, y| {
             self.aside(middle(x, y)) < 1.0
         });
+        if apart.area() == 0 {
+            return covered;
+        }
         let is_next_to = |x: u32, y: u32| {
             let mut near = near(x, y, BESIDE, mask.dimensions());
             near.any(|(x, y)| apart.is_hand(x, y))
