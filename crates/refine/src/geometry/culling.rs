@@ -66,8 +66,9 @@ impl Block {
         let is_near = |k: usize| {
             let (dx, dy) = (self.x[k] - x, self.y[k] - y);
             let radius = self.radius[k] + distance * self.per_mm[k];
+            let is_beyond = dx * dx + dy * dy >= radius * radius;
             // What is not a number is nowhere, and may be near.
-            !(dx * dx + dy * dy >= radius * radius)
+            !is_beyond
         };
         (0..BLOCK).fold(0, |near, k| near | u8::from(is_near(k)) << k)
     }
