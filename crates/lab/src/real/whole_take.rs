@@ -125,6 +125,9 @@ impl Method for WholeTake<'_> {
 
     fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>> {
         let Fitted { take, frame_ms } = self.0.of(sequence, progress)?;
+        if take.as_ref().is_ok_and(|take| !take.tells_side()) {
+            eprintln!("{}: it hardly tells a right hand from a left one", sequence.take.name);
+        }
         let cameras = sequence.cameras();
         let outcome = |number: usize| Outcome {
             found: match take {

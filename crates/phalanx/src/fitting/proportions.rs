@@ -32,6 +32,11 @@ impl KnownHand {
     pub(super) fn anyone(shape: &HandShape) -> Self {
         Self { shape: shape.clone(), std: POPULATION.deviations(shape) }
     }
+
+    /// Whether more is known of it than that it is somebody's.
+    pub(super) fn is_learnt(&self) -> bool {
+        self.std != POPULATION.deviations(&self.shape)
+    }
 }
 
 /// What borders tell of a hand's proportions.

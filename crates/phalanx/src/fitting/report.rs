@@ -76,9 +76,9 @@ pub enum FitDoubt {
     NotSeen,
     /// The views leave the pose open; its deviations are infinite.
     Open,
-    /// A hand of the other side explains the take about as well or better: every pose may be wrong.
+    /// A hand of the other side explains the take better: every pose may be wrong.
     OtherSide,
-    /// The take is explained about as well or better if two cameras' pictures are exchanged: every pose may be wrong.
+    /// The take is explained better if two cameras' pictures are exchanged: every pose may be wrong.
     Exchanged {
         /// The cameras' numbers.
         views: [usize; 2],

@@ -12,7 +12,7 @@ use super::frame_fit::{FrameFitter, WORTH_ANOTHER};
 use super::knowledge::ViewKnowledge;
 use super::known::Known;
 use super::misfit;
-use super::mistake;
+use super::mistake::{self, Asked};
 use super::observation::fitted_hand;
 use super::passes;
 use super::proportions::{self, HandEvidence, KnownHand};
@@ -62,6 +62,21 @@ pub struct TakeFit {
     /// Frame by frame.
     pub frames: Vec<FrameFit>,
     pub(super) known: Known,
+    tells_side: bool,
+}
+
+impl TakeFit {
+    /// Whether the take told the hand's proportions. Else they are those of the hand that was given, all larger or smaller
+    /// by one factor where the take told its size.
+    pub fn is_hand_learnt(&self) -> bool {
+        self.known.hand.is_learnt()
+    }
+
+    /// Whether the take tells the hand's side. Else a hand of the other side explains it about as well, or two cameras saw it in
+    /// too few frames to ask.
+    pub fn tells_side(&self) -> bool {
+        self.tells_side
+    }
 }
 
 /// How often the hand is learnt at most, each time from frames fitted with it as it was before: a finger that was
@@ -101,12 +116,13 @@ pub fn fit_take(
     let Around { take, middle, found } = best.ok_or(Error::NoHand)?;
     let volume = VolumeEstimate::around(&middle, found.iter().flatten(), &take.hand.shape);
     let searching = FrameFitter { refinement: &refinement, ..take.fitter(Weights::Relative) };
-    let mistake = mistake::of_take(&searching, cameras, frames, &found, progress)?;
+    let Asked { mistake, tells_side } =
+        mistake::of_take(&searching, cameras, frames, &found, progress)?;
     let known = Known { hand: take.hand.clone(), weights: take.weights.clone(), mistake };
     let frames = take.reports(&found, &known, &volume.volume)?;
     let forearm = settings.hand.forearm.clone();
     let hand = HandShape { forearm, ..take.hand.shape.clone() };
-    Ok(TakeFit { hand, volume, frames, known })
+    Ok(TakeFit { hand, volume, frames, known, tells_side })
 }
 
 /// A take that is being fitted.
