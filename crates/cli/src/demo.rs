@@ -16,7 +16,6 @@ use serde_json::json;
 
 use crate::form::Form;
 use crate::progress::Bar;
-use crate::recording::timeline::Moment;
 use crate::track::take;
 
 /// The rig of the examples.
@@ -96,13 +95,10 @@ fn drawn(rig: &Rig, hand: &HandShape, pose: &Pose) -> Result<TakeFrame> {
 }
 
 fn written(rig: &Rig, fit: &TakeFit) -> Take {
-    let moment = |frame: usize| Moment {
-        time: Some(frame as f64 / RATE),
-        frames: vec![Some(frame); rig.cameras.len()],
-    };
+    let all = vec![true; rig.cameras.len()];
     let frame = |(number, fitted)| {
         let time = number as f64 / RATE;
-        take::frame(&rig.cameras, (number, &moment(number)), time, Some(fitted))
+        take::frame(&rig.cameras, (number, &all), time, Some(fitted))
     };
     let rest = fit.volume.volume.rest_frame();
     let header = take::header(&rig.cameras, (&fit.hand, rest), Some(RATE));

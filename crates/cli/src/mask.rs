@@ -55,6 +55,19 @@ pub(crate) fn is_like_a_mask(photograph: &RgbImage, off: u8) -> bool {
     black > 0 && white > 0 && others <= most
 }
 
+/// Whether a photograph has light and shade, but no colour. One that is dark everywhere has neither.
+pub(crate) fn is_without_colour(photograph: &RgbImage) -> bool {
+    let bright = |pixel: &Rgb<u8>| pixel.0.into_iter().max() > Some(DARK);
+    photograph.pixels().any(bright) && photograph.pixels().all(|pixel| is_grey(*pixel, GREY))
+}
+
+/// What a camera shows that sees nothing, levels at most: its noise, in the dark.
+const DARK: u8 = 64;
+
+/// Why a photograph without colour is refused where skin is looked for.
+pub(crate) const NO_COLOUR: &str = "the picture has no colour, and skin is found by its colour: give colour photographs, or \
+                                    masks with --mask, or see --segment";
+
 /// Whether the channels of a pixel differ by no more than so many levels.
 pub(crate) fn is_grey(Rgb([red, green, blue]): Rgb<u8>, most: u8) -> bool {
     red.max(green).max(blue) - red.min(green).min(blue) <= most

@@ -4,7 +4,7 @@ use image::RgbImage;
 use phalanx::{Cause, Error, Estimator, LossReason, Segmenter};
 use phalanx_segmentation::Error as Reason;
 
-use crate::mask::{GREY, is_grey};
+use crate::mask::{GREY, NO_COLOUR, is_grey};
 use crate::segment::Prepared;
 
 /// The error of an estimate from pictures. Where no hand was found, it says what the picture is like.
@@ -45,8 +45,7 @@ fn cause(photograph: &RgbImage) -> &'static str {
     let sum =
         |channel: usize| photograph.pixels().map(|pixel| u64::from(pixel[channel])).sum::<u64>();
     if photograph.pixels().all(|pixel| is_grey(*pixel, GREY)) {
-        "the picture has no colour, and skin is found by its colour: give colour photographs, or masks \
-         with --mask, or see --segment"
+        NO_COLOUR
     } else if sum(2) > sum(0) {
         "there is more blue than red in the picture, so the light may be too cold for skin to be found by \
          its colour: set the camera's white balance, give masks with --mask, or see --segment"

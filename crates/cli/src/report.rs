@@ -1,5 +1,7 @@
 //! `phalanx report`.
 
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
@@ -8,7 +10,9 @@ use phalanx_cli::files::Output;
 use phalanx_io::report::{
     FrameChoice, NamedRange, RangeOfMotion, print_page, range_table, to_csv, to_json, to_text,
 };
+use phalanx_io::take::Take;
 
+use crate::counts::counted;
 use crate::form::Form;
 use crate::take_file;
 
@@ -65,8 +69,25 @@ fn range(path: &Path, arguments: &Arguments) -> Result<RangeOfMotion> {
     let take = take_file::read(path)?;
     let choice = if arguments.all_frames { FrameChoice::All } else { FrameChoice::Trusted };
     RangeOfMotion::of(&take, choice).with_context(|| {
-        format!("{}: no frame can be trusted (--all-frames counts doubted ones)", path.display())
+        format!(
+            "{}: no frame can be trusted: {} (--all-frames counts doubted ones)",
+            path.display(),
+            doubts(&take)
+        )
     })
+}
+
+/// What speaks against a take's frames, each with the number of frames, the most frequent first.
+fn doubts(take: &Take) -> String {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for doubt in take.frames.iter().flat_map(|frame| &frame.doubts) {
+        *counts.entry(doubt).or_default() += 1;
+    }
+    let mut counts: Vec<(&str, usize)> = counts.into_iter().collect();
+    counts.sort_by_key(|&(_, count)| Reverse(count));
+    let frames = counted(take.frames.len(), "frame");
+    let said = counts.iter().map(|(doubt, count)| format!("{doubt} in {count} of {frames}"));
+    said.collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use phalanx::{Picture, Segment, Segmentation, Segmenter, photograph_from};
 use phalanx_cli::reading;
 use phalanx_segmentation::{Mask, PlainBackground, SkinModel};
 
-use crate::mask::{OFF_BLACK_AND_WHITE, given_mask, is_like_a_mask};
+use crate::mask::{NO_COLOUR, OFF_BLACK_AND_WHITE, given_mask, is_like_a_mask, is_without_colour};
 
 #[derive(Args, Clone, Default)]
 pub(crate) struct SegmentArguments {
@@ -103,7 +103,7 @@ impl Pictures {
 /// A picture in which the hand is looked for in this way.
 ///
 /// # Errors
-/// A picture that is a mask.
+/// A picture that is a mask, or one without colour in which skin is looked for.
 fn photograph(picture: &DynamicImage, segmenter: &Segmenter) -> Result<RgbImage> {
     let photograph = photograph_from(picture);
     // A picture without colour shows no skin, so that nothing useful is refused. Before a plain background a
@@ -113,6 +113,8 @@ fn photograph(picture: &DynamicImage, segmenter: &Segmenter) -> Result<RgbImage>
         !is_like_a_mask(&photograph, off),
         "it is black and white, as masks are: for masks, give --mask"
     );
+    let is_useless = matches!(segmenter, Segmenter::Skin(_)) && is_without_colour(&photograph);
+    ensure!(!is_useless, NO_COLOUR);
     Ok(photograph)
 }
 

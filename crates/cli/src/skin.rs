@@ -114,6 +114,13 @@ fn skin(hand: &Path, mask: &dyn Fn(&str, &str, &RgbImage) -> Result<Mask>) -> Re
     }
     let model = trainer.finish(&counted(pairs.len(), "picture"))?;
     let [found, wrong] = [true, false].map(|is_hand| share_of_skin(&model, &pairs, is_hand));
+    let of_hand = share_of_hand(&pairs);
+    if wrong * (1.0 - of_hand) > of_hand {
+        eprintln!(
+            "phalanx: more of the rest is taken for skin than there is hand: masks that are made with this model will \
+             not do; take things of that colour out of the pictures, or use a model of the background (--empty alone)"
+        );
+    }
     let text = format!(
         "the colour of skin from {}: {:.0} % of the hand is told, {:.1} % of the rest is taken for it",
         counted(pairs.len(), "picture"),
@@ -136,6 +143,13 @@ fn share_of_skin(model: &SkinModel, pairs: &[(RgbImage, Mask)], of_hand: bool) -
         }
     }
     skin as f64 / all.max(1) as f64
+}
+
+/// The share of all pixels that are hand.
+fn share_of_hand(pairs: &[(RgbImage, Mask)]) -> f64 {
+    let hand: usize = pairs.iter().map(|(_, mask)| mask.area()).sum();
+    let all: usize = pairs.iter().map(|(_, mask)| mask.len()).sum();
+    hand as f64 / all.max(1) as f64
 }
 
 /// The cameras' folders of pictures, by name.

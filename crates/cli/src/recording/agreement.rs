@@ -37,8 +37,8 @@ fn agreement(source: &Source, view: usize, fit: &TakeFit) -> Finding {
     if 2 * contradicts > all {
         let text = format!(
             "it contradicts the other cameras at {contradicts} of {moments}: it was moved after the \
-             calibration, the calibration is wrong, its frames are of other moments, or recordings are \
-             exchanged, its own or two others'"
+             calibration, the calibration or its unit is wrong, its frames are of other moments, or recordings \
+             are exchanged, its own or two others'"
         );
         return Finding::broken(what, text);
     }
@@ -54,14 +54,15 @@ fn agreement(source: &Source, view: usize, fit: &TakeFit) -> Finding {
     let doubted = doubts.count();
     if 2 * doubted > all {
         let text = format!(
-            "{text}, which is not as of a hand, or of one that is cut off, at {doubted} of {moments}: {look}"
+            "{text}; at {doubted} of {moments} the outline is not a hand's, or the picture's border cuts it off: {look}"
         );
         return Finding::doubtful(what, text);
     }
     if contradicts + absent == 0 {
         return Finding::good(what, text);
     }
-    let text =
-        format!("{text}; of {moments} it contradicts at {contradicts}, shows no hand at {absent}");
-    Finding::doubtful(what, text)
+    let at = [(contradicts, "contradicts the others"), (absent, "shows no hand")];
+    let at = at.into_iter().filter(|(count, _)| *count > 0);
+    let at: Vec<String> = at.map(|(count, does)| format!("at {count} it {does}")).collect();
+    Finding::doubtful(what, format!("{text}; of {moments}, {}", at.join(", ")))
 }

@@ -39,8 +39,8 @@ pub(crate) fn assign(
         let found = folders_of(cameras, Path::new(folder));
         return found.with_context(|| {
             format!(
-                "{folder}: it is to hold the {things} of all cameras, but nothing in it is named like one ({}): {}; \
-                 one camera's are given as {}=PATH",
+                "{folder}: nothing in it is named after a camera ({}): {}; name what it holds like the cameras, or say whose \
+                 each of the {things} is, as {}=PATH",
                 names(),
                 held(Path::new(folder)),
                 cameras[0].name
@@ -58,11 +58,11 @@ pub(crate) fn assign(
     let is_named = recordings.iter().all(|recording| named(cameras, recording).is_some());
     ensure!(
         is_named || recordings.len() == cameras.len(),
-        "{} {things} for {} cameras: name them, such as {}=PATH; the cameras are {}",
+        "{} {things} for {} cameras ({}): name those that are there, as {}=PATH; the others are left out",
         recordings.len(),
         cameras.len(),
-        cameras[0].name,
-        names()
+        names(),
+        cameras[0].name
     );
     for (k, recording) in recordings.iter().enumerate() {
         let (camera, path) =
@@ -159,13 +159,16 @@ mod tests {
         assert!(said.contains("give the recordings of all 3 cameras in the order"), "{said}");
         let empty = tempfile::tempdir().unwrap();
         let said = refusal(&empty.path().display().to_string());
-        assert!(said.contains("it is to hold the recordings of all cameras"), "{said}");
-        assert!(said.contains(": it is empty; one camera's are given as "), "{said}");
+        assert!(said.contains("nothing in it is named after a camera"), "{said}");
+        assert!(said.contains(": it is empty; name what it holds like the cameras, or "), "{said}");
         for name in ["e", "d", "c", "b", "a"] {
             std::fs::create_dir(empty.path().join(name)).unwrap();
         }
         let said = refusal(&empty.path().display().to_string());
-        assert!(said.contains(": it holds a, b, c, d, …; one camera's are given as "), "{said}");
+        assert!(
+            said.contains(": it holds a, b, c, d, …; name what it holds like the cameras"),
+            "{said}"
+        );
     }
 
     #[test]

@@ -17,6 +17,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use image::DynamicImage;
+use phalanx_camera::Camera;
 
 /// When a frame was taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +46,7 @@ pub(crate) trait Recording {
 /// Nothing there, no frame in it, or a video that neither the program nor `ffmpeg` can read.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Recording>> {
     let name = || path.display().to_string();
+    ensure!(path.exists(), "{}: there is no such file or folder", path.display());
     let kind = std::fs::metadata(path).with_context(name)?;
     let recording: Box<dyn Recording> = if kind.is_dir() {
         Box::new(pictures::PictureFolder::open(path).with_context(name)?)
@@ -53,6 +55,19 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Recording>> {
     };
     ensure!(!recording.stamps().is_empty(), "{}: there is no frame in it", path.display());
     Ok(recording)
+}
+
+/// Refuses a picture that is no scaled copy of its camera's image, to within a pixel.
+pub(crate) fn check_shape(picture: &DynamicImage, camera: &Camera) -> Result<()> {
+    let (width, height) = (picture.width(), picture.height());
+    let (own_width, own_height) = (camera.intrinsics.width, camera.intrinsics.height);
+    let fitting = f64::from(width) * f64::from(own_height) / f64::from(own_width);
+    ensure!(
+        (fitting - f64::from(height)).abs() <= 1.0,
+        "the picture has {width}×{height} px, but the camera was calibrated for {own_width}×{own_height}; \
+         is it turned or cropped, or another recording's?"
+    );
+    Ok(())
 }
 
 /// H.264 in MP4 is decoded here; `ffmpeg` reads every other video, where it is installed.

@@ -1,6 +1,7 @@
 //! The masks and landmarks of a recording's moments, one after the other.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use anyhow::{Result, ensure};
@@ -13,7 +14,7 @@ use phalanx_sampling::spread_subset;
 
 use super::landmarks::{LandmarkRecording, of_frames};
 use super::timeline::{Moment, Timeline};
-use super::{Recording, Stamp, timestamps};
+use super::{Recording, Stamp, check_shape, timestamps};
 use crate::segment::Pictures;
 
 /// The rate that is assumed where frames have no times, Hz.
@@ -31,6 +32,8 @@ pub(crate) struct Reader<'a> {
     /// What a detector saw in each camera's frames, of those that have landmarks.
     landmarks: Vec<Option<Vec<Option<Landmarks>>>>,
     pictures: &'a Pictures,
+    /// The moments and views of the pictures that could not be read so far.
+    unreadable: BTreeSet<(usize, usize)>,
     pub(crate) timeline: Timeline,
     /// When each moment was, s: by the cameras' clocks or, where they have none, by a rate.
     pub(crate) times: Vec<f64>,
@@ -66,7 +69,19 @@ impl<'a> Reader<'a> {
         let clock: Option<Vec<f64>> = timeline.moments.iter().map(|moment| moment.time).collect();
         let rate = clock.is_none().then_some(USUAL_RATE);
         let times = clock.unwrap_or_else(|| at_rate(timeline.moments.len(), USUAL_RATE));
-        Ok(Self { cameras, paths, tracks, recordings, landmarks, pictures, timeline, times, rate })
+        let unreadable = BTreeSet::new();
+        Ok(Self {
+            cameras,
+            paths,
+            tracks,
+            recordings,
+            landmarks,
+            pictures,
+            unreadable,
+            timeline,
+            times,
+            rate,
+        })
     }
 
     /// The same by another rate, Hz, where the cameras have no clocks.
@@ -88,6 +103,15 @@ impl<'a> Reader<'a> {
     /// The moments.
     pub(crate) fn moments(&self) -> &[Moment] {
         &self.timeline.moments
+    }
+
+    /// Whether each view has a frame at a moment that was read, and it could be read.
+    pub(crate) fn shown(&self, moment: usize) -> Vec<bool> {
+        let frames = self.timeline.moments[moment].frames.iter().enumerate();
+        let is_shown = |(view, frame): (usize, &Option<usize>)| {
+            frame.is_some() && !self.unreadable.contains(&(moment, view))
+        };
+        frames.map(is_shown).collect()
     }
 
     /// Reads some moments from everywhere in the recording; what cannot be read is noted and missing.
@@ -117,6 +141,7 @@ impl<'a> Reader<'a> {
             let named = |error| {
                 let name = &recording.stamps()[frame].name;
                 failures.push(format!("frame {name}, camera {}: {error:#}", camera.name));
+                self.unreadable.insert((moment, view));
             };
             masks.push(mask.map_err(named).ok());
         }
@@ -170,15 +195,8 @@ fn opened(
     Ok(recordings.into_iter().flatten().collect())
 }
 
-/// The mask of a picture, which must be a scaled copy of the camera's image to within a pixel.
+/// The mask of a camera's picture.
 fn mask(picture: &DynamicImage, camera: &Camera, pictures: &Pictures) -> Result<Mask> {
-    let (width, height) = (picture.width(), picture.height());
-    let (own_width, own_height) = (camera.intrinsics.width, camera.intrinsics.height);
-    let fitting = f64::from(width) * f64::from(own_height) / f64::from(own_width);
-    ensure!(
-        (fitting - f64::from(height)).abs() <= 1.0,
-        "the picture has {width}×{height} px, but the camera was calibrated for {own_width}×{own_height}; \
-         is it turned or cropped?"
-    );
+    check_shape(picture, camera)?;
     pictures.mask(&camera.name, picture)
 }

@@ -3,9 +3,10 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use phalanx_camera::{Rig, ViewAngle, ViewScale};
+use phalanx_hand::HandShape;
 use serde::Serialize;
 
 use super::simulation::{Angle, Simulation, simulate};
@@ -74,6 +75,7 @@ pub(crate) fn read(path: &Path) -> Result<Rig> {
     let bytes = reading::read(path).with_context(named)?;
     let advice = || format!("{}: no rig; `phalanx rig import` makes one of a calibration", named());
     let text = std::str::from_utf8(&bytes).with_context(advice)?;
+    ensure!(HandShape::from_toml(text).is_err(), "{}: this is a hand, not a rig", named());
     Rig::from_toml(text).map_err(|error| {
         let is_other = matches!(error, phalanx_camera::Error::Toml { .. });
         anyhow::Error::from(error).context(if is_other { advice() } else { named() })

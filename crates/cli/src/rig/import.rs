@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Error, Result};
+use anyhow::{Context, Error, Result, anyhow};
 use clap::Args;
 use phalanx_camera::Rig;
 use phalanx_cli::files::Output;
@@ -58,9 +58,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { files, unit, square_mm, size, .. } = arguments;
     let missing = Missing { unit: unit.or(*square_mm), size: *size };
     import(arguments, &missing).map_err(|error| {
-        let advice =
-            unit::advice(&error, files, &missing).or_else(|| size_advice(&error, &missing));
-        match advice {
+        if let Some(advice) = unit::advice(&error, files, &missing) {
+            return anyhow!("{error:#}; {advice}");
+        }
+        match size_advice(&error, &missing) {
             Some(advice) => error.context(advice),
             None => error,
         }

@@ -22,9 +22,9 @@ pub(crate) struct Arguments {
     /// The person's hand, as `calibrate-hand` or `--save-hand` writes it; fitted on the way by default.
     #[arg(long, value_name = "FILE.toml")]
     pub(super) hand: Option<PathBuf>,
-    /// Which hand it is.
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) side: SideName,
+    /// Which hand it is; a right one unless it is said.
+    #[arg(long, value_enum)]
+    pub(super) side: Option<SideName>,
     /// The frame rate of pictures that have no times; 30 Hz by default.
     #[arg(long, value_name = "HZ", value_parser = rate)]
     pub(super) rate: Option<f64>,
@@ -42,14 +42,15 @@ pub(crate) struct Arguments {
     /// --fit-together moments, nothing is kept.
     #[arg(long, value_name = "FILE")]
     pub(super) out: PathBuf,
-    /// Write the hand that was fitted, for later recordings of the same person.
+    /// Write the hand that was fitted, for later recordings of the same person; not if the recording did not tell its
+    /// proportions.
     #[arg(long, value_name = "FILE.toml")]
     pub(super) save_hand: Option<PathBuf>,
 }
 
 /// Of fewer moments a wrong camera is not told from the others, and half of them are too few to learn proportions from that
 /// are tried on the other half: one moment gave a hand of 184 mm where all gave 192.
-const LEAST_TOGETHER: usize = 6;
+pub(super) const LEAST_TOGETHER: usize = 6;
 
 fn together(text: &str) -> Result<usize> {
     let moments = text.parse()?;
@@ -85,9 +86,19 @@ impl Arguments {
         }
     }
 
+    /// Which hand it is.
+    pub(super) fn side(&self) -> Side {
+        self.side.unwrap_or_default().into()
+    }
+
+    /// Which hand it is, if it was said: a hand's file says it too.
+    pub(super) fn said_side(&self) -> Option<SideName> {
+        self.side.or_else(|| self.hand.as_ref().map(|_| self.side().into()))
+    }
+
     /// The hand to begin with.
     pub(super) fn settings(&self) -> Result<TakeSettings> {
-        let side = Side::from(self.side);
+        let side = self.side();
         let Some(path) = &self.hand else {
             let hand = HandShape { side, ..HandShape::adult() };
             return Ok(TakeSettings { hand, proportions: Proportions::FromTake });

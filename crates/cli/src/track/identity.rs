@@ -14,6 +14,7 @@ use crate::counts::counted;
 use crate::recording::landmarks::is_frame;
 use crate::recording::pictures::is_picture;
 use crate::recording::source::Source;
+use crate::side::SideName;
 
 /// So much of a recording is read to tell it from another, bytes; its size and the time of its last change
 /// tell the rest.
@@ -32,7 +33,7 @@ impl Identity {
         let settings = [
             ("the program", Some(Maker::here().to_string())),
             ("the kind of output", Some(format!("{:?}", arguments.kind()?))),
-            ("--side", Some(format!("{:?}", arguments.side).to_lowercase())),
+            ("--side", Some(SideName::from(arguments.side()).to_string())),
             ("--rate", arguments.rate.map(|rate| rate.to_string())),
             ("--fit-together, --whole-take", Some(together)),
             ("--mask, --segment", segmented),

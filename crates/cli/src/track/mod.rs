@@ -33,35 +33,43 @@ use crate::rig::check;
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let kind = arguments.kind()?;
     let rig = check::read(&arguments.rig)?;
-    let source = Source::new(&rig, &arguments.recording, arguments.side.into())?;
+    let source = Source::new(&rig, &arguments.recording, arguments.side())?;
     let given = [Some(&arguments.rig), arguments.hand.as_ref(), arguments.recording.segment.path()];
     let inputs: Vec<&PathBuf> = source.inputs().chain(given.into_iter().flatten()).collect();
     let out = Output::new(&arguments.out, &inputs)?;
     let hand_out = arguments.save_hand.as_ref().map(|path| Output::new(path, &inputs));
     let hand_out = hand_out.transpose()?;
     hand_out.iter().try_for_each(|hand| hand.check_apart(&out))?;
-    let save = |hand: &HandShape| {
-        hand_out.as_ref().map_or(Ok(()), |out| out.write(hand.to_toml().as_bytes()))
+    let save = |hand: &HandShape, tally: &Tally| match &hand_out {
+        Some(out) if tally.hand_not_told => {
+            eprintln!(
+                "phalanx: {}: not written, since the recording does not tell the hand's proportions",
+                out.path().display()
+            );
+            Ok(())
+        }
+        Some(out) => out.write(hand.to_toml().as_bytes()),
+        None => Ok(()),
     };
     let recorded = Recorded::open(&source, arguments.rate)?;
-    recorded.tell();
+    recorded.tell(arguments.rate);
     let settings = (arguments.fitted_together(), &arguments.settings()?);
     let mut journal = Journal::beside(&out, Identity::of(arguments, &source)?);
     let bar = Bar::new();
     let (hand, tally) = if recorded.times().len() <= settings.0 {
         journal.read()?;
         let (hand, rows) = fitted(recorded, settings, (&out, kind), &bar)?;
-        save(&hand)?;
+        save(&hand, &rows.tally)?;
         (hand, rows.finish()?)
     } else {
         let streaming = streaming(recorded, settings, (&out, kind), &journal, &bar)?;
         let hand = streaming.hand.clone();
-        save(&hand)?;
+        save(&hand, streaming.tally())?;
         (hand, streaming.run(&mut journal, &bar)?)
     };
     journal.remove();
     drop(bar);
-    tally.conclude(&source.cameras, &hand, &arguments.out)
+    tally.conclude(&source.cameras, &hand, arguments.said_side(), &arguments.out)
 }
 
 /// A recording that is fitted as a whole.
@@ -74,7 +82,7 @@ fn fitted(
     let mut failures = Vec::new();
     let fit = recorded.fit(most, settings, bar, &mut failures)?;
     let header = recorded.header(&fit.hand, fit.volume.volume.rest_frame());
-    let mut rows = Rows::new(out, kind, header, None, Tally::default())?;
+    let mut rows = Rows::new(out, kind, header, None, Tally::of_fit(&fit, settings))?;
     rows.tally.add_failures(failures);
     for (moment, frame) in fit.frames.iter().enumerate() {
         rows.push(&recorded.frame(moment, Some(frame)))?;

@@ -6,6 +6,7 @@ use phalanx::{FrameFit, TakeFit, TakeSettings, fit_take};
 use phalanx_hand::HandShape;
 use phalanx_io::take::{TakeFrame, TakeHeader};
 
+use super::arguments::LEAST_TOGETHER;
 use super::take;
 use crate::counts::counted;
 use crate::progress::Bar;
@@ -60,23 +61,37 @@ impl<'a> Recorded<'a> {
     /// What is said of a moment.
     pub(super) fn frame(&self, moment: usize, fit: Option<&FrameFit>) -> TakeFrame {
         let Self { source, reader } = self;
-        let place = (moment, &reader.moments()[moment]);
-        take::frame(&source.cameras, place, reader.times[moment], fit)
+        let shown = reader.shown(moment);
+        take::frame(&source.cameras, (moment, &shown), reader.times[moment], fit)
     }
 
-    /// Says what was found.
-    pub(super) fn tell(&self) {
+    /// Says what was found. `rate` is the one that was given.
+    pub(super) fn tell(&self, rate: Option<f64>) {
         let (cameras, timeline) = (&self.source.cameras, &self.reader.timeline);
         let Timeline { moments, missing, unmatched } = timeline;
         let moments = counted(moments.len(), "moment");
         eprintln!("phalanx: {moments} by {}", counted(cameras.len(), "camera"));
-        for (camera, (missing, unmatched)) in cameras.iter().zip(missing.iter().zip(unmatched)) {
-            if missing + unmatched > 0 {
+        if self.times().len() < LEAST_TOGETHER {
+            eprintln!(
+                "phalanx: with fewer than {LEAST_TOGETHER} moments the hand's proportions are uncertain"
+            );
+        }
+        if let (Some(assumed), None) = (self.reader.rate, rate) {
+            eprintln!(
+                "phalanx: the recording does not say when its pictures were taken: {assumed} a second are assumed; \
+                 give --rate or --timestamps"
+            );
+        }
+        for (camera, (&missing, &unmatched)) in cameras.iter().zip(missing.iter().zip(unmatched)) {
+            if missing > 0 {
+                let missing = counted(missing, "moment");
+                eprintln!("phalanx: camera '{}' has no picture at {missing}", camera.name);
+            }
+            if unmatched > 0 {
+                let unmatched = counted(unmatched, "picture");
                 eprintln!(
-                    "phalanx: camera '{}' has no frame at {}, and {} of no moment",
-                    camera.name,
-                    counted(*missing, "moment"),
-                    counted(*unmatched, "frame")
+                    "phalanx: camera '{}': {unmatched} belong to no moment of the others and are left out",
+                    camera.name
                 );
             }
         }

@@ -34,8 +34,13 @@ impl<'a> Streaming<'a> {
         recorded.reader.rewind()?;
         let tracker = Tracker::of_take(&recorded.source.cameras, &fit, Delay::OneFrame)?;
         let header = recorded.header(&fit.hand, fit.volume.volume.rest_frame());
-        let rows = Rows::new(out, kind, header, None, Tally::default())?;
+        let rows = Rows::new(out, kind, header, None, Tally::of_fit(&fit, settings))?;
         Ok(Self { recorded, hand: fit.hand, tracker, rows, next: 0 })
+    }
+
+    /// What was counted so far.
+    pub(super) fn tally(&self) -> &Tally {
+        &self.rows.tally
     }
 
     /// Goes on where an earlier run was.

@@ -7,7 +7,6 @@ use phalanx_hand::HandShape;
 use phalanx_io::take::{FrameView, LeftOut, PoseEstimate, TakeFrame, TakeHeader};
 
 use crate::recording::doubt;
-use crate::recording::timeline::Moment;
 
 /// What holds for all frames.
 pub(crate) fn header(
@@ -24,10 +23,10 @@ pub(crate) fn header(
     }
 }
 
-/// One frame. Where no view shows a hand, there is no pose.
+/// One frame, of which some views have a picture. Where no view shows a hand, there is no pose.
 pub(crate) fn frame(
     cameras: &[Camera],
-    (index, moment): (usize, &Moment),
+    (index, has_picture): (usize, &[bool]),
     time: f64,
     fit: Option<&FrameFit>,
 ) -> TakeFrame {
@@ -48,10 +47,10 @@ pub(crate) fn frame(
         joints: fit.joints,
         joint_std: joint_std.iter().all(|std| std.is_finite()).then_some(joint_std),
     };
-    let views = fit.views.iter().zip(&moment.frames).map(|(view, picture)| FrameView {
+    let views = fit.views.iter().zip(has_picture).map(|(view, has_picture)| FrameView {
         used: view.missing.is_none(),
         overlap: view.overlap,
-        left_out: picture.and_then(|_| left_out(view)),
+        left_out: has_picture.then(|| left_out(view)).flatten(),
     });
     let doubts = fit.doubts.iter().map(|doubt| doubt::code(doubt, cameras)).collect();
     TakeFrame {

@@ -60,7 +60,9 @@ pub(super) fn video(take: &Take, filmed: &mut [Filmed], every: usize, out: &Outp
                 .stdin(Stdio::piped())
                 .stderr(Stdio::piped())
                 .spawn();
-            encoder = Some(child.context("starting ffmpeg; a sheet does without: --out FILE.png")?);
+            encoder = Some(child.context(
+                "a video needs ffmpeg, which does not start here; `--out FILE.png` makes a sheet without it",
+            )?);
         }
         let input = encoder.as_mut().and_then(|child| child.stdin.as_mut());
         // What went wrong it says itself, below.

@@ -3,14 +3,14 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use image::{DynamicImage, imageops::FilterType};
 use phalanx_camera::{Camera, Rig};
 use phalanx_io::take::Take;
 
 use crate::recording::assign::{assign, names};
 use crate::recording::timeline::{Moment, Timeline};
-use crate::recording::{Recording, Stamp, open, timestamps};
+use crate::recording::{Recording, Stamp, check_shape, open, timestamps};
 
 /// Wider pictures are made smaller, px.
 const WIDEST: u32 = 640;
@@ -19,6 +19,8 @@ const WIDEST: u32 = 640;
 pub(super) struct Filmed {
     /// The camera, its image as large as pictures are shown.
     pub(super) camera: Camera,
+    /// As it was calibrated.
+    calibrated: Camera,
     recording: Box<dyn Recording>,
     /// Where it is.
     pub(super) path: PathBuf,
@@ -45,6 +47,9 @@ pub(super) fn open_all(
     let both = both.filter_map(|(camera, path)| Some((camera.clone(), path?)));
     let (cameras, paths): (Vec<Camera>, Vec<PathBuf>) =
         both.filter(|(camera, _)| views.contains(&camera.name)).unzip();
+    for view in views.iter().filter(|view| cameras.iter().all(|camera| camera.name != **view)) {
+        eprintln!("phalanx: camera '{view}' of the take has no recording here and is left out");
+    }
     ensure!(
         !cameras.is_empty(),
         "none of the take's cameras ({}) has a recording; the rig's cameras are {}: is it another take's rig?",
@@ -65,7 +70,7 @@ pub(super) fn open_all(
     let filmed = recordings.into_iter().zip(paths).zip(&cameras).enumerate();
     let filmed = filmed.map(|(view, ((recording, path), camera))| {
         let frames = moments.iter().map(|moment| moment.frames[view]).collect();
-        Filmed { camera: shown(camera), recording, path, frames }
+        Filmed { camera: shown(camera), calibrated: camera.clone(), recording, path, frames }
     });
     Ok(filmed.collect())
 }
@@ -102,6 +107,9 @@ impl Filmed {
         let Some(frame) = moment.copied().flatten() else { return Ok(None) };
         let (width, height) = self.size();
         let picture = self.recording.read(frame)?;
+        check_shape(&picture, &self.calibrated).with_context(|| {
+            format!("{}, frame {}", self.path.display(), self.recording.stamps()[frame].name)
+        })?;
         Ok(Some(picture.resize_exact(width, height, FilterType::Triangle)))
     }
 

@@ -2,6 +2,7 @@
 
 mod film;
 mod footage;
+mod label;
 mod overlay;
 
 use std::num::NonZeroUsize;

@@ -197,9 +197,9 @@ fn a_wrong_unit_is_told_from_a_bad_lens() {
         CALISCOPE.replace("[-0.1, 0.02, 0.001, -0.002, 0.0]", "[-0.014, 1.42, 0.0, 0.0, -6.39]");
     std::fs::write(folder.0.path().join("folding.toml"), folding).unwrap();
     for (arguments, advice) in [
-        ("folding.toml --unit 150", Some("a length of 1 is hardly 150 mm: the cameras see")),
-        ("folding.toml --unit mm", Some("if a length of 1 is 220 to 3800 mm, such as --unit m: ")),
-        ("folding.toml", Some("phalanx: the cameras see a hand well if a length of 1 is 220")),
+        ("folding.toml --unit 150", Some("; a length of 1 is hardly 150 mm: the cameras see")),
+        ("folding.toml --unit mm", Some("if a length of 1 is 220 to 3800 mm, such as --unit m\n")),
+        ("folding.toml", Some("; the cameras see a hand well if a length of 1 is 220")),
         // The unit is right, and the hand works too near.
         ("folding.toml --unit m --volume-size 900,900,900", None),
     ] {

@@ -139,14 +139,16 @@ fn pictures_are_shown_with_joints_and_outline_of_the_hand() {
     };
     filmed(&["--out", "sheet.png", "--every", "15"]);
     let sheet = image::open(at("sheet.png")).unwrap().to_rgb8();
-    assert_eq!(sheet.dimensions(), (120, 2 * 90));
+    // Two lines of words are above each picture.
+    assert_eq!(sheet.dimensions(), (120, 2 * 110));
     let drawn = |rows: std::ops::Range<u32>| {
         sheet
             .enumerate_pixels()
             .filter(|(_, y, pixel)| rows.contains(y) && pixel.0 != [0; 3])
             .count()
     };
-    assert!(drawn(0..90) > 100 && drawn(90..180) == 0, "frame 15 has no picture");
+    assert!(drawn(0..20) > 100 && drawn(110..130) > 100, "each frame is named");
+    assert!(drawn(20..110) > 100 && drawn(130..220) == 0, "frame 15 has no picture");
     if Command::new("ffmpeg").arg("-version").output().is_err() {
         eprintln!("skipped: ffmpeg, which makes videos, is not installed");
         return;
@@ -176,6 +178,7 @@ fn the_outline_lies_on_the_hand_in_pictures_of_any_size() {
     let frames = ["--frames", "frames", "--rig", "rig.toml", "--every", "40", "--out"];
     folder.writes(&[&["view", "take.csv"][..], &frames, &["sheet.png"]].concat());
     let sheet = image::open(at("sheet.png")).unwrap().to_rgb8();
+    let sheet = image::imageops::crop_imm(&sheet, 0, 40, 500, 300).to_image();
     let hand = draw_mask(
         rig.camera("top").unwrap(),
         &HandShape::adult(),
@@ -278,6 +281,18 @@ fn wrong_use_is_refused_with_what_to_do() {
     says(&["convert", "take.csv", "--out", "t.glb", "--unit", "mm"], "glTF has lengths in m");
     says(&["view", "take.csv", "--out", "take.pdf"], ".html for a page, .png for a sheet");
     says(&["view", "take.csv", "--out", "sheet.png"], "give --frames and --rig");
+    let at = |name: &str| folder.0.path().join(name);
+    std::fs::write(at("rig.toml"), include_str!("../../fixtures/desk.toml")).unwrap();
+    std::fs::create_dir_all(at("frames/top")).unwrap();
+    image::RgbImage::new(90, 90).save(at("frames/top/0.png")).unwrap();
+    let view = ["view", "take.csv", "--frames", "frames", "--rig", "rig.toml", "--out", "s.png"];
+    says(&view, "frame 0: the picture has 90×90 px, but the camera was calibrated for 120×90");
+    std::fs::write(at("hand.toml"), HandShape::adult().to_toml()).unwrap();
+    says(&["rig", "check", "hand.toml"], "hand.toml: this is a hand, not a rig");
+    let mut take = read_csv(&folder.file("take.csv")[..]).unwrap();
+    take.frames.iter_mut().for_each(|frame| frame.doubts.push("other-side".to_owned()));
+    write_csv(&take, std::fs::File::create(at("doubted.csv")).unwrap()).unwrap();
+    says(&["report", "doubted.csv"], "no frame can be trusted: other-side in 30 of 30 frames");
     says(&["report", "take.csv", "--out", "take.pdf"], "must end with .csv or .html");
     says(&["evaluate", "take.csv", "--reference", "x.c3d"], "ends with .csv, .trc, .mot");
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::desk::{CAMERAS, DEMO, Desk, Outcome, run};
-use phalanx_io::take::{Take, read_csv};
+use phalanx_io::take::{Take, read_csv, read_json_lines};
 
 /// How far the hand is closed in a frame.
 pub(crate) fn closed(frame: usize) -> f64 {
@@ -58,6 +58,7 @@ fn folders_of_masks_become_angles() {
         format!("{}=take/{}", CAMERAS[0], CAMERAS[0]),
     ];
     let outcome = track(&desk, &[&named[0], &named[1], "--hand", "me.toml", "--out", "again.csv"]);
+    assert!(outcome.err.contains("the hand is "), "{outcome:?}");
     assert_eq!(outcome.code, Some(0), "{outcome:?}");
     let error = error_mm(&take(&desk, "again.csv"));
     assert!(error < 8.0, "{error} mm");
@@ -71,9 +72,12 @@ fn what_cannot_be_read_is_named_and_the_rest_is_done() {
     let outcome = track(&desk, &["take", "--out", "take.jsonl"]);
     assert_eq!(outcome.code, Some(1), "{outcome:?}");
     assert!(outcome.err.contains(&format!("frame 0002, camera {}", CAMERAS[0])), "{outcome:?}");
+    assert!(outcome.err.contains("has no picture at 1 moment\n"), "{outcome:?}");
+    let take = read_json_lines(desk.read("take.jsonl").as_slice()).unwrap();
+    let view = &take.frames[2].views[0];
     assert!(
-        outcome.err.contains("has no frame at 1 moment, and 0 frames of no moment"),
-        "{outcome:?}"
+        !view.used && view.left_out.is_none(),
+        "it shows nothing, and not that there is no hand"
     );
     assert_eq!(String::from_utf8(desk.read("take.jsonl")).unwrap().lines().count(), 1 + 6);
 }
@@ -97,7 +101,7 @@ fn wrong_use_is_refused_by_name() {
     }
     desk.save(&format!("take/{}/0000.png", CAMERAS[0]), &image::DynamicImage::new_luma8(90, 120));
     let outcome = track(&desk, &["take", "--out", "t.csv"]);
-    assert!(outcome.err.contains("is it turned or cropped?"), "{outcome:?}");
+    assert!(outcome.err.contains("is it turned or cropped"), "{outcome:?}");
 }
 
 /// Masks are no photographs, also where a video or a JPEG file has blurred them.
@@ -140,6 +144,35 @@ fn photographs_given_as_masks_are_told() {
     let looked = run(desk.folder(), ["doctor", "--rig", "rig.toml", "take", "--mask"]);
     assert_eq!(looked.code, Some(2), "{looked:?}");
     assert!(looked.out.contains(told), "{looked:?}");
+}
+
+/// Skin is found by its colour.
+#[test]
+fn photographs_without_colour_are_told() {
+    let desk = recorded(2);
+    for (camera, frame) in CAMERAS.iter().flat_map(|camera| [(camera, 0), (camera, 1)]) {
+        let grey = desk.open(&format!("{camera}.png")).to_luma8();
+        desk.save(&format!("take/{camera}/{frame:04}.png"), &grey.into());
+    }
+    let outcome = run(desk.folder(), ["track", "--rig", "rig.toml", "take", "--out", "t.csv"]);
+    assert_eq!(outcome.code, Some(2), "{outcome:?}");
+    assert!(outcome.err.contains("none of the 4 pictures can be used"), "{outcome:?}");
+    assert!(outcome.err.contains("the picture has no colour"), "{outcome:?}");
+}
+
+/// One camera tells no hand's proportions: none are said, nor kept for another recording.
+#[test]
+fn a_hand_that_the_recording_does_not_tell_is_nobodys() {
+    let desk = recorded(6);
+    let one = format!("{0}=take/{0}", CAMERAS[1]);
+    let outcome = track(&desk, &[&one, "--out", "one.csv", "--save-hand", "me.toml"]);
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    assert!(outcome.err.contains("a mean hand of 184 mm was fitted"), "{outcome:?}");
+    assert!(outcome.err.contains("me.toml: not written"), "{outcome:?}");
+    assert!(!desk.path("me.toml").exists());
+    assert!(outcome.err.contains("hardly tells a right hand from a left one"), "{outcome:?}");
+    // Nor does the recording say when its pictures were taken.
+    assert!(outcome.err.contains("30 a second are assumed"), "{outcome:?}");
 }
 
 #[test]

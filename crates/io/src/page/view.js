@@ -152,9 +152,9 @@ function drawJoints(context, joints, width) {
 // What doubts mean, which are written as CODE or CODE:CAMERA.
 const DOUBTS = {
   "no-hand": "no camera shows a hand",
-  "poor-fit": "a camera that was used shows something else than the estimated hand",
+  "poor-fit": "that camera was used, but shows something else than the estimated hand",
   "poor-landmarks": "the landmarks of that camera are of something else than the estimated hand",
-  "other-side": "a hand of the other side explains the recording as well or better",
+  "other-side": "a hand of the other side explains the recording better",
   "exchanged": "these two cameras seem to have each other's pictures",
   "open": "the cameras leave the pose open: it has no deviations",
   "cut-off": "part of the hand is beyond the border of that camera's picture, and no two cameras show all of it",
