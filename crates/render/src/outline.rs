@@ -47,27 +47,12 @@ impl Ellipse {
         squared * (squared / determinant).sqrt()
     }
 
-    /// How far it reaches towards `normal`, of any length.
-    #[inline]
-    fn support(&self, normal: DVec2) -> Support {
+    /// The furthest point towards `normal`, of any length, and its dot product with `normal`.
+    fn support(&self, normal: DVec2) -> (f64, DVec2) {
         let across = self.shape * normal;
         let half_width = normal.dot(across).sqrt();
-        Support { reach: normal.dot(self.middle) + half_width, across, half_width }
+        (normal.dot(self.middle) + half_width, self.middle + across / half_width)
     }
-
-    /// The furthest point, where it reaches so far.
-    #[inline]
-    fn point(&self, support: &Support) -> DVec2 {
-        self.middle + support.across / support.half_width
-    }
-}
-
-/// How far an ellipse reaches in a direction.
-struct Support {
-    /// The dot product of its furthest point with the direction.
-    reach: f64,
-    across: DVec2,
-    half_width: f64,
 }
 
 /// Appends the corners of a solid's outline, in order, in the normalised image plane, so many that
@@ -114,11 +99,11 @@ fn furthest(ellipses: &[Ellipse], normal: DVec2) -> (usize, DVec2) {
     let mut best = (0, ellipses[0].support(normal));
     for (index, ellipse) in ellipses.iter().enumerate().skip(1) {
         let support = ellipse.support(normal);
-        if support.reach > best.1.reach {
+        if support.0 > best.1.0 {
             best = (index, support);
         }
     }
-    (best.0, ellipses[best.0].point(&best.1))
+    (best.0, best.1.1)
 }
 
 /// Appends the corners where the lead changes between two normals from one ellipse to another.
@@ -144,7 +129,7 @@ fn change(
 /// The normal of the common tangent of two ellipses, and where it touches them, when the first
 /// leads at one normal and the second at the next.
 fn tangent([one, other]: [&Ellipse; 2], [mut first, mut last]: [DVec2; 2]) -> (DVec2, [DVec2; 2]) {
-    let lead = |normal: DVec2| one.support(normal).reach - other.support(normal).reach;
+    let lead = |normal: DVec2| one.support(normal).0 - other.support(normal).0;
     let mut normal = first;
     // Two steps of false position: the lead is nearly linear over so small a turn.
     for _ in 0..2 {
@@ -157,5 +142,5 @@ fn tangent([one, other]: [&Ellipse; 2], [mut first, mut last]: [DVec2; 2]) -> (D
             last = normal;
         }
     }
-    (normal, [one, other].map(|own| own.point(&own.support(normal))))
+    (normal, [one.support(normal).1, other.support(normal).1])
 }

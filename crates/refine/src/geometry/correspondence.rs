@@ -6,7 +6,6 @@ use phalanx_render::Renderer;
 use phalanx_segmentation::Mask;
 
 use crate::error::{Error, Result};
-use crate::geometry::culling::Discs;
 use crate::geometry::drawn_term::DrawnTerm;
 use crate::geometry::sphere_hull::{Bound, ClosestApproach, SphereHull};
 use crate::observation::boundary::boundary_edges;
@@ -46,12 +45,11 @@ const DEVIATION: f64 = 0.1;
 const FINEST: f64 = 0.005;
 const COARSEST: f64 = 0.5;
 
-/// The hulls of a posed hand, and where their outlines may be.
-#[derive(Debug, Clone, Default)]
-struct SeenHand {
-    hulls: Vec<SphereHull>,
-    bounds: Vec<Bound>,
-    discs: Discs,
+/// A hull, and where its outline may be.
+#[derive(Debug, Clone)]
+struct Seen {
+    hull: SphereHull,
+    bound: Bound,
 }
 
 impl Correspondence {
@@ -70,7 +68,7 @@ impl Correspondence {
 #[derive(Debug, Clone)]
 pub(crate) struct ViewMatcher {
     renderer: Renderer,
-    seen: SeenHand,
+    seen: Vec<Seen>,
     drawn: Mask,
     edges: Vec<DVec2>,
     /// The primitive that each observed edge was matched with last: seldom another next time.
@@ -89,7 +87,7 @@ impl ViewMatcher {
         let renderer = renderer.map_err(|reason| render_error(evidence, reason))?;
         Ok(Self {
             renderer,
-            seen: SeenHand::default(),
+            seen: Vec::new(),
             drawn: Mask::default(),
             edges: Vec::new(),
             last: vec![0; evidence.edges().len()],
@@ -117,12 +115,13 @@ impl ViewMatcher {
             camera.extrinsics.rotation,
             camera.extrinsics.translation,
         );
-        self.seen.replace(primitives.iter().map(|primitive| primitive.moved(&to_camera)));
+        self.seen.clear();
+        self.seen
+            .extend(primitives.iter().map(|primitive| Seen::new(&primitive.moved(&to_camera))));
         self.correspondences.clear();
         let observed = evidence.rays().iter().zip(evidence.normals()).zip(&mut self.last);
         for ((&ray, &normal), last) in observed.step_by(every) {
-            let hint = (*last).min(primitives.len() - 1);
-            let found = self.seen.closest(ray, Some(normal), hint);
+            let found = closest(&self.seen, ray, Some(normal), (*last).min(primitives.len() - 1));
             *last = found.primitive;
             self.correspondences.push(found);
         }
@@ -147,7 +146,7 @@ impl ViewMatcher {
                 continue;
             }
             let ray = evidence.rays()[nearest];
-            let approach = self.seen.hulls[own.primitive].closest_approach(ray);
+            let approach = self.seen[own.primitive].hull.closest_approach(ray);
             self.correspondences.push(Correspondence::new(ray, own.primitive, approach));
         }
     }
@@ -179,8 +178,8 @@ impl ViewMatcher {
         let direction = evidence.camera().intrinsics.to_normalised(edge)?;
         // What is drawn nearby is likely drawn by the same primitive.
         let nearest = evidence.nearest(edge);
-        let hint = self.last[nearest - nearest % every].min(self.seen.hulls.len() - 1);
-        Some(self.seen.closest(direction.extend(1.0).normalize(), None, hint))
+        let hint = self.last[nearest - nearest % every].min(self.seen.len() - 1);
+        Some(closest(&self.seen, direction.extend(1.0).normalize(), None, hint))
     }
 
     /// Draws primitives, in the world, into an image.
@@ -201,44 +200,40 @@ impl ViewMatcher {
     }
 }
 
-impl SeenHand {
-    /// Another hand, by its solids in the camera's frame.
-    fn replace(&mut self, solids_in_camera: impl Iterator<Item = Primitive>) {
-        self.hulls.clear();
-        self.hulls.extend(solids_in_camera.map(|solid| SphereHull::new(&solid)));
-        self.bounds.clear();
-        self.bounds.extend(self.hulls.iter().map(SphereHull::bound));
-        self.discs.replace(self.bounds.iter());
+impl Seen {
+    fn new(solid_in_camera: &Primitive) -> Self {
+        let hull = SphereHull::new(solid_in_camera);
+        Self { hull, bound: hull.bound() }
     }
+}
 
-    /// The primitive that a ray is least outside of; `hint` is looked at first. Where it is known which way
-    /// the background is from the ray, primitives whose outline faces another way count as further off.
-    fn closest(&self, ray: DVec3, background: Option<DVec2>, hint: usize) -> Correspondence {
-        /// How much further an outline that faces away counts as, mm: about a finger's radius, so that a
-        /// finger's one side is not taken for the other.
-        const FACING: f64 = 12.0;
-        let place = ray.truncate() / ray.z;
-        let cost = |approach: &ClosestApproach| {
-            // The normal points from the ray into the solid; a squashed one's may be longer than 1.
-            let turned = background.map_or(0.0, |out| 1.0 + out.dot(approach.normal.truncate()));
-            approach.distance + 0.5 * FACING * turned.max(0.0)
-        };
-        let mut best = Correspondence::new(ray, hint, self.hulls[hint].closest_approach(ray));
-        let mut least = cost(&best.approach);
-        for primitive in self.discs.near(place, least) {
-            if primitive == hint || self.bounds[primitive].is_beyond(place, least) {
-                continue;
-            }
-            // No cost is below the distance.
-            if let Some(approach) = self.hulls[primitive].closest_approach_within(least, ray) {
-                let cost = cost(&approach);
-                if cost < least {
-                    (best, least) = (Correspondence::new(ray, primitive, approach), cost);
-                }
+/// The primitive that a ray is least outside of; `hint` is looked at first. Where it is known which way
+/// the background is from the ray, primitives whose outline faces another way count as further off.
+fn closest(seen: &[Seen], ray: DVec3, background: Option<DVec2>, hint: usize) -> Correspondence {
+    /// How much further an outline that faces away counts as, mm: about a finger's radius, so that a
+    /// finger's one side is not taken for the other.
+    const FACING: f64 = 12.0;
+    let place = ray.truncate() / ray.z;
+    let cost = |approach: &ClosestApproach| {
+        // The normal points from the ray into the solid; a squashed one's may be longer than 1.
+        let turned = background.map_or(0.0, |out| 1.0 + out.dot(approach.normal.truncate()));
+        approach.distance + 0.5 * FACING * turned.max(0.0)
+    };
+    let mut best = Correspondence::new(ray, hint, seen[hint].hull.closest_approach(ray));
+    let mut least = cost(&best.approach);
+    for (primitive, candidate) in seen.iter().enumerate() {
+        if primitive == hint || candidate.bound.is_beyond(place, least) {
+            continue;
+        }
+        // No cost is below the distance.
+        if let Some(approach) = candidate.hull.closest_approach_within(least, ray) {
+            let cost = cost(&approach);
+            if cost < least {
+                (best, least) = (Correspondence::new(ray, primitive, approach), cost);
             }
         }
-        best
     }
+    best
 }
 
 fn render_error(evidence: &SilhouetteObservation, reason: phalanx_render::Error) -> Error {

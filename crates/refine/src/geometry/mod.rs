@@ -1,7 +1,6 @@
 //! A posed hand against rays: the primitives, what they pass, and what of them is in the same place.
 
 pub(crate) mod correspondence;
-pub(crate) mod culling;
 pub(crate) mod drawn_term;
 pub(crate) mod self_collision;
 pub(crate) mod shape_parameters;

@@ -52,21 +52,7 @@ struct Sight<'a> {
     across: [DVec3; 3],
 }
 
-impl<'a> Sight<'a> {
-    /// Past so many of the centres; the last stands for those that are missing.
-    #[inline]
-    fn of(centers: &'a [DVec3; 3], count: usize, ray: DVec3) -> Self {
-        let past = |k: usize| {
-            let depth = centers[k].dot(ray);
-            (depth, centers[k] - ray * depth)
-        };
-        let first = past(0);
-        let second = if count > 1 { past(1) } else { first };
-        let third = if count > 2 { past(2) } else { second };
-        let [(a, p), (b, q), (c, r)] = [first, second, third];
-        Self { ray, centers, depths: [a, b, c], across: [p, q, r] }
-    }
-
+impl Sight<'_> {
     /// From the nearest place of the ray, for spheres whose depth has the sign of `depth`.
     fn to(&self, depth: f64) -> &[DVec3; 3] {
         if depth < 0.0 { self.centers } else { &self.across }
@@ -99,12 +85,6 @@ pub(crate) struct Bound {
 }
 
 impl Bound {
-    /// The middle and the radius of a disc that holds the outline, and by how much it grows for each millimetre that a ray
-    /// may pass beside it.
-    pub(crate) fn disc(&self) -> (DVec2, f64, f64) {
-        (self.middle, self.reach + self.around, self.per_mm)
-    }
-
     /// Whether the ray through a place of the plane z = 1 surely passes at least so far off, mm.
     #[inline]
     pub(crate) fn is_beyond(&self, place: DVec2, distance: f64) -> bool {
@@ -212,10 +192,12 @@ impl SphereHull {
     }
 
     fn closest_approach_to_spheres(&self, within: f64, ray: DVec3) -> Option<ClosestApproach> {
-        let sight = Sight::of(&self.centers, self.spheres, ray);
+        let depths = self.centers.map(|center| center.dot(ray));
+        let across = [0, 1, 2].map(|k| self.centers[k] - ray * depths[k]);
+        let sight = Sight { ray, centers: &self.centers, depths, across };
         let nearest = |distance, weights| Nearest { distance, weights, through: false };
         let Nearest { distance, weights, through } = match self.spheres {
-            1 => nearest(sight.to(sight.depths[0])[0].length() - self.radii[0], [1.0, 0.0, 0.0]),
+            1 => nearest(sight.to(depths[0])[0].length() - self.radii[0], [1.0, 0.0, 0.0]),
             2 => {
                 let (distance, t) = self.edge(&sight, [0, 1], within)?;
                 nearest(distance, [1.0 - t, t, 0.0])
@@ -225,7 +207,6 @@ impl SphereHull {
         if distance >= within {
             return None;
         }
-        let depths = sight.depths;
         let depth = depths[0] * weights[0] + depths[1] * weights[1] + depths[2] * weights[2];
         let to = sight.to(depth);
         let offset = to[0] * weights[0] + to[1] * weights[1] + to[2] * weights[2];
@@ -235,7 +216,6 @@ impl SphereHull {
 
     /// ρ of the hull of two spheres and the second one's weight; nothing where it is surely no less than
     /// `within`.
-    #[inline]
     fn edge(&self, sight: &Sight<'_>, ends: [usize; 2], within: f64) -> Option<(f64, f64)> {
         let [first, last] = ends.map(|k| sight.depths[k]);
         if (first < 0.0) == (last < 0.0) {
@@ -249,7 +229,6 @@ impl SphereHull {
     }
 
     /// The same of spheres whose weight is within a span, with where the ray passes them.
-    #[inline]
     fn part_of_edge(
         &self,
         offsets: &[DVec3; 3],
