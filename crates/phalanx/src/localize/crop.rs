@@ -8,7 +8,7 @@ use phalanx_segmentation::Mask;
 use super::arm::Arm;
 use super::exits::Exits;
 use crate::error::{Error, Result};
-use crate::window::resample;
+use crate::window::resample::PixelPlaces;
 
 /// Side of a crop, px: with [`REACH`] a pixel is about two millimetres of an adult's hand, a quarter of
 /// a finger.
@@ -60,12 +60,12 @@ impl HandCrop {
         let virtual_camera =
             camera.turned(offset, right, Intrinsics::pinhole(SIDE, SIDE, focal))?;
         let to_picture = PixelMap::between(&virtual_camera, camera);
-        let size = (SIDE, SIDE);
+        let places = PixelPlaces::new(&to_picture, (SIDE, SIDE));
         let mut seen = Mask::new(SIDE, SIDE);
-        resample::resample(mask, &to_picture, &mut seen);
+        places.resample(mask, &mut seen);
         Ok(Self {
-            inside: resample::inside(&to_picture, size, mask.dimensions()),
-            grain: resample::pixels_aside(&to_picture, size),
+            inside: places.inside(mask.dimensions()),
+            grain: places.pixels_aside(),
             exits: Exits::of(camera, mask),
             camera: virtual_camera,
             mask: seen,

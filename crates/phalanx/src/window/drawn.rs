@@ -1,6 +1,5 @@
 //! Drawn hands as windows show them, without the pictures that the windows look into.
 
-use glam::DVec2;
 use phalanx_camera::{Camera, Intrinsics, PixelMap};
 use phalanx_hand::Primitive;
 use phalanx_render::Renderer;
@@ -10,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::features::describer::{Describer, WORKING_SIZE};
 use crate::synthesis::augmentation::make_ragged;
 use crate::window::finder::WindowFinder;
-use crate::window::resample;
+use crate::window::resample::{PixelPlaces, pixels_aside};
 use crate::window::virtual_camera::Window;
 
 /// The longest side of a picture in which hands are found, px: a [`HandDetector`] looks at no more than
@@ -101,8 +100,7 @@ impl DrawnWindows {
     /// The mask of [`WORKING_SIZE`] that a window onto the picture of a camera shows.
     fn draw(&mut self, number: usize, window: &Window, view: &DrawnView) -> Result<Mask> {
         let camera = &self.cameras[number];
-        let aside =
-            resample::pixels_aside(&PixelMap::between(&window.camera, camera), WORKING_SIZE);
+        let aside = pixels_aside(&PixelMap::between(&window.camera, camera), WORKING_SIZE);
         let aside = aside.min(MOST_PIXELS);
         let times = (f64::from(WORKING_SIZE.0 / SHAPE.0) * aside).round().max(1.0) as u32;
         let fine = window.camera.intrinsics.resized(SHAPE.0 * times, SHAPE.1 * times);
@@ -114,7 +112,8 @@ impl DrawnWindows {
         }
         let Intrinsics { width, height, .. } = camera.intrinsics;
         let to_picture = PixelMap::between(&window.camera.with_intrinsics(fine), camera);
-        resample::cut(&mut self.drawn, &to_picture, DVec2::new(width.into(), height.into()));
+        PixelPlaces::new(&to_picture, self.drawn.dimensions())
+            .cut(&mut self.drawn, (width, height));
         clean_into(&self.drawn, &Cleanup::default(), &mut self.cleaning, &mut self.cleaned)
             .and_then(|()| downsample_mask(&self.cleaned, WORKING_SIZE.0, WORKING_SIZE.1))
             .map_err(|reason| no_silhouette(camera, reason))

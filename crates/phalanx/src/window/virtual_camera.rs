@@ -7,7 +7,8 @@ use phalanx_segmentation::{HandDetection, Mask, Silhouette};
 
 use crate::error::Result;
 use crate::features::describer::WORKING_SIZE;
-use crate::window::{layout, resample};
+use crate::window::layout;
+use crate::window::resample::PixelPlaces;
 
 /// A virtual camera of [`WORKING_SIZE`](crate::WORKING_SIZE), turned and zoomed onto a hand so that
 /// it fills a fifth of the picture. The arm comes from the left border, at most one hand length
@@ -60,7 +61,7 @@ impl Window {
         if seen.dimensions() != WORKING_SIZE {
             *seen = Mask::new(WORKING_SIZE.0, WORKING_SIZE.1);
         }
-        resample::resample(mask, &self.to_picture, seen);
+        self.places().resample(mask, seen);
     }
 
     /// What its silhouette tells of the pose; of what is beyond the picture's border, nothing.
@@ -68,10 +69,15 @@ impl Window {
     /// # Errors
     /// A silhouette of another size than the window, or without a border.
     pub fn evidence(&self, silhouette: &Silhouette) -> Result<SilhouetteObservation> {
-        let inside = resample::inside(&self.to_picture, WORKING_SIZE, self.picture());
+        let places = self.places();
+        let inside = places.inside(self.picture());
         let known = |at: DVec2| inside.is_hand(at.x as u32, at.y as u32);
         let evidence = SilhouetteObservation::within(&self.camera, &silhouette.mask, known)?;
-        Ok(evidence.resampled(1.0 / resample::pixels_aside(&self.to_picture, WORKING_SIZE)))
+        Ok(evidence.resampled(1.0 / places.pixels_aside()))
+    }
+
+    fn places(&self) -> PixelPlaces {
+        PixelPlaces::new(&self.to_picture, WORKING_SIZE)
     }
 
     /// The picture's pixel for one of the window; `None` where the picture's lens has none.
