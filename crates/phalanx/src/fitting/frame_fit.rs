@@ -90,7 +90,7 @@ impl FrameFitter<'_> {
     }
 
     /// The same of what the crops tell.
-    fn used(
+    pub(super) fn used(
         &self,
         silhouettes: Vec<Option<SilhouetteObservation>>,
         points: &[Option<CameraPoints>],
@@ -108,9 +108,16 @@ impl FrameFitter<'_> {
 
     /// What each view of a frame shows of its hand, also of those that are left out; `None` of one without a border.
     pub(super) fn silhouettes(&self, found: &Found) -> Vec<Option<SilhouetteObservation>> {
-        let frame = found.frame(self.hand);
-        let crops = found.crops.iter();
-        crops.map(|crop| self.evidence_of(crop.as_ref()?, &frame)).collect()
+        self.silhouettes_of(&found.crops, &found.frame(self.hand))
+    }
+
+    /// What each crop shows of a hand with its wrist and arm as a frame has them.
+    pub(super) fn silhouettes_of(
+        &self,
+        crops: &[Option<HandCrop>],
+        frame: &DAffine3,
+    ) -> Vec<Option<SilhouetteObservation>> {
+        crops.iter().map(|crop| self.evidence_of(crop.as_ref()?, frame)).collect()
     }
 
     /// What the points of a camera tell.

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 use phalanx_camera::Camera;
 use phalanx_hand::{Dof, JOINTS, Pose};
-use phalanx_refine::{Agreement, Posterior};
+use phalanx_refine::{Agreement, Posterior, SilhouetteObservation};
 
 use super::flesh;
 use super::found::Found;
@@ -128,11 +128,19 @@ pub(super) struct Reporter<'a> {
 impl Reporter<'_> {
     /// The report of a frame.
     pub(super) fn report(&self, found: &Found) -> Result<FrameFit> {
+        self.report_beside(found, self.fitter.silhouettes(found))
+    }
+
+    /// The same of a frame whose views show these silhouettes.
+    pub(super) fn report_beside(
+        &self,
+        found: &Found,
+        silhouettes: Vec<Option<SilhouetteObservation>>,
+    ) -> Result<FrameFit> {
         let (fitter, hand) = (self.fitter, self.fitter.hand);
         let pose = found.pose_in(&self.rest, hand);
         let joints = hand.pose(&pose, &self.rest).joints;
         let mut doubts = Vec::from_iter(self.known.mistake.map(FitDoubt::from));
-        let silhouettes = fitter.silhouettes(found);
         let agreements = views::agreements(fitter, found, &silhouettes)?;
         let posterior =
             fitter.posterior(found, silhouettes, &self.known.hand.std)?.unwrap_or_else(|| {

@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 use phalanx_hand::Pose;
-use phalanx_refine::{Evidence, Level, PoseFit, PoseFitSettings};
+use phalanx_refine::{Evidence, Level, PoseFit, PoseFitSettings, SilhouetteObservation};
 
 use super::motion::{Motion, NUMBERS};
 use super::noise::MotionNoise;
@@ -15,6 +15,8 @@ use crate::fitting::{consensus, frame_fit, misfit, starts};
 /// A frame fitted near where its hand was predicted.
 pub(super) struct Followed {
     pub(super) found: Found,
+    /// What each view showed it as.
+    pub(super) silhouettes: Vec<Option<SilhouetteObservation>>,
     /// What is known of the motion after it.
     pub(super) motion: Motion,
     /// How far each number came out from where it was predicted, and the variance of that and of what is
@@ -76,7 +78,8 @@ pub(super) fn follow(
     let crops = seen.crops(fitter.ball(&rest));
     let points = seen.points.clone();
     let left_out = fitter.weights.left_out(points.len());
-    let evidence = fitter.seen(&crops, &points, &left_out, &rest);
+    let silhouettes = fitter.silhouettes_of(&crops, &rest);
+    let evidence = fitter.used(silhouettes.clone(), &points, &left_out, &rest);
     if Evidence::from(&evidence).is_empty() {
         return Ok(None);
     }
@@ -96,7 +99,7 @@ pub(super) fn follow(
     let (offset, before) = (offset(&refined.pose, predicted), predicted.variances());
     let after = std::array::from_fn(|k| covariance[k * NUMBERS + k]);
     let found = Found { rest, refined, crops, points, left_out, misfit };
-    Ok(Some(Followed { found, motion, offset, before, after }))
+    Ok(Some(Followed { found, silhouettes, motion, offset, before, after }))
 }
 
 impl Frame<'_> {

@@ -121,7 +121,7 @@ impl Tracker {
     /// None today.
     pub fn resumed(cameras: &[Camera], state: TrackerState) -> Result<Self> {
         let TrackerState { delay, known, rest, noise, recent, last } = state;
-        let last = last.map(|(time, motion)| Last { time, found: None, motion });
+        let last = last.map(|(time, motion)| Last::unseen(time, motion));
         Ok(Self { noise, last, recent, ..Self::with(cameras, known, None, rest, delay)? })
     }
 
@@ -176,7 +176,7 @@ impl Tracker {
             self.begun(time, frame, near.as_slice())?
         };
         let next = self.sized(frame, next)?;
-        let due = match (self.delay, &last) {
+        let due = match (self.delay, last) {
             (Delay::None, _) => Some(self.report(&next)?),
             (Delay::OneFrame, Some(last)) if self.owes => {
                 Some(self.report(&last.in_the_light(prediction.as_ref(), &next, self.hand()))?)
@@ -208,12 +208,10 @@ impl Tracker {
     fn begun(&mut self, time: f64, frame: &TakeFrame, near: &[DAffine3]) -> Result<Last> {
         let fitter = self.fitter(&self.searching);
         let found = recover(&fitter, &self.cameras, frame, None, near)?;
-        let found = found.map(|found| self.agreeing(found)).transpose()?;
-        let motion = found.as_ref().map(|found| self.starting(found));
-        if let Some(motion) = &motion {
-            self.rest.get_or_insert(motion.rest);
-        }
-        Ok(Last { time, found, motion })
+        let Some(found) = found else { return Ok(Last::unseen(time, None)) };
+        let next = self.started(time, self.agreeing(found)?);
+        self.rest = self.rest.or(next.motion.as_ref().map(|motion| motion.rest));
+        Ok(next)
     }
 
     /// Whether a frame may be the first that tells how large the hand is: one camera, which left that open, left open as
@@ -277,22 +275,22 @@ impl Tracker {
                 badly.is_none_or(|badly| found.misfit < WORTH_A_JUMP * badly.misfit)
             });
             if let Some(found) = found {
-                let found = self.agreeing(found)?;
-                let motion = Some(self.starting(&found));
-                return Ok(Last { time, found: Some(found), motion });
+                return Ok(self.started(time, self.agreeing(found)?));
             }
         }
         let Some(followed) = followed else {
-            return Ok(Last { time, found: None, motion: Some(predicted.clone()) });
+            return Ok(Last::unseen(time, Some(predicted.clone())));
         };
-        let Followed { found, motion, offset, before, after } = followed;
+        let Followed { found, silhouettes, motion, offset, before, after } = followed;
         self.noise.learn(&offset, &before, &after);
         self.recent.push(found.misfit);
         let used = found.left_out.clone();
         let found = self.agreeing(found)?;
-        // Without a view the pose is another.
-        let motion = if found.left_out == used { motion } else { self.starting(&found) };
-        Ok(Last { time, found: Some(found), motion: Some(motion) })
+        if found.left_out != used {
+            // Without a view the pose is another.
+            return Ok(self.started(time, found));
+        }
+        Ok(Last { time, found: Some(found), silhouettes, motion: Some(motion) })
     }
 
     /// Keeps a frame that tells of the hand, and learns the hand once there are enough.
@@ -333,16 +331,18 @@ impl Tracker {
         Ok(views::without_disagreeing(&self.fitter(&self.searching), &found)?.0)
     }
 
-    /// The motion of a hand that was found without one.
-    fn starting(&self, found: &Found) -> Motion {
+    /// A hand that was found without a motion.
+    fn started(&self, time: f64, found: Found) -> Last {
         let covariance: Vec<f64> =
             found.refined.covariance.iter().map(|own| own / self.noise.unit()).collect();
-        Motion::starting(found.rest, found.refined.pose, &covariance, self.hand())
+        let motion = Motion::starting(found.rest, found.refined.pose, &covariance, self.hand());
+        let silhouettes = self.fitter(&self.searching).silhouettes(&found);
+        Last { time, found: Some(found), silhouettes, motion: Some(motion) }
     }
 
     /// What is said of a frame.
     fn report(&self, last: &Last) -> Result<TrackedFrame> {
-        let Last { time, found, motion } = last;
+        let Last { time, found, silhouettes, motion } = last;
         let (Some(motion), Some(rest)) = (motion, self.rest) else {
             return Ok(TrackedFrame { time: *time, fit: None });
         };
@@ -351,7 +351,7 @@ impl Tracker {
             &FrameFitter { weights: known.weights.clone(), ..self.fitter(&self.searching) };
         let reporter = Reporter { cameras: &self.cameras, fitter, known, rest };
         let fit = match found {
-            Some(found) => reporter.report(found)?,
+            Some(found) => reporter.report_beside(found, silhouettes.clone())?,
             None => reporter.unseen(&motion.pose, &motion.rest),
         };
         Ok(TrackedFrame { time: *time, fit: Some(fit) })
