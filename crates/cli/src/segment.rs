@@ -1,5 +1,6 @@
 //! How the hand is told from the rest of pictures, as options.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
@@ -7,7 +8,7 @@ use clap::Args;
 use image::{DynamicImage, RgbImage};
 use phalanx::{Picture, Segment, Segmentation, Segmenter, photograph_from};
 use phalanx_cli::reading;
-use phalanx_segmentation::{Mask, PlainBackground, SkinModel};
+use phalanx_segmentation::{Mask, PlainBackground, SceneModel, SkinModel};
 
 use crate::mask::{NO_COLOUR, OFF_BLACK_AND_WHITE, given_mask, is_like_a_mask, is_without_colour};
 
@@ -16,8 +17,9 @@ pub(crate) struct SegmentArguments {
     /// The pictures are masks: brighter than 127 is hand.
     #[arg(long)]
     pub(crate) mask: bool,
-    /// How the hand is told from the rest: `skin` by its colour (the default), `plain` before a plain bright
-    /// background, `plain-dark` before a dark one, or as a FILE of `phalanx skin` says.
+    /// How the hand is told from the rest: `skin` by its colour, `plain` before a plain bright background,
+    /// `plain-dark` before a dark one, or as a FILE of `phalanx skin` says. By default by its colour; in a recording in
+    /// which much of what stands still looks like skin, by what moves.
     #[arg(long, value_name = "skin|plain|plain-dark|FILE", conflicts_with = "mask")]
     pub(crate) segment: Option<PathBuf>,
 }
@@ -26,8 +28,8 @@ pub(crate) struct SegmentArguments {
 pub(crate) enum Pictures {
     /// Masks: brighter than 127 is hand.
     Masks,
-    /// Photographs, in which the hand is found so.
-    Photographs(Segmentation),
+    /// Photographs, in which the hand is found so; or, before the scenes of some cameras, as these tell.
+    Photographs(Segmentation, BTreeMap<String, SceneModel>),
 }
 
 /// A picture that an estimator can be asked about.
@@ -45,9 +47,9 @@ impl SegmentArguments {
             Some("skin") => Segmenter::Skin(SkinModel::builtin()),
             Some("plain") => Segmenter::PlainBackground(PlainBackground::Bright),
             Some("plain-dark") => Segmenter::PlainBackground(PlainBackground::Dark),
-            _ => return self.file().map(Pictures::Photographs),
+            _ => return Ok(Pictures::Photographs(self.file()?, BTreeMap::new())),
         };
-        Ok(Pictures::Photographs(Segmentation::Shared(shared)))
+        Ok(Pictures::Photographs(Segmentation::Shared(shared), BTreeMap::new()))
     }
 
     /// The file that says how, if it is one that does.
@@ -78,9 +80,11 @@ impl Pictures {
     pub(crate) fn mask(&self, camera: &str, picture: &DynamicImage) -> Result<Mask> {
         match self {
             Self::Masks => given_mask(picture).context("photographs go without --mask"),
-            Self::Photographs(segmentation) => {
+            Self::Photographs(segmentation, scenes) => {
                 let segmenter = segmentation.of_camera(camera)?;
-                Ok(segmenter.segment(&photograph(picture, segmenter)?)?)
+                let photograph = photograph(picture, segmenter)?;
+                let scene = scenes.get(camera).map(|scene| scene.segment(&photograph));
+                Ok(scene.unwrap_or_else(|| segmenter.segment(&photograph))?)
             }
         }
     }
@@ -89,7 +93,7 @@ impl Pictures {
     /// the hand is therefore found here.
     pub(crate) fn prepared(&self, camera: &str, picture: &DynamicImage) -> Result<Prepared<'_>> {
         let named = || format!("camera '{camera}'");
-        if let Self::Photographs(segmentation) = self {
+        if let Self::Photographs(segmentation, _) = self {
             let segmenter = segmentation.of_camera(camera)?;
             if !matches!(segmenter, Segmenter::Background(_)) {
                 let photograph = photograph(picture, segmenter).with_context(named)?;

@@ -21,6 +21,7 @@ pub use masking::background::{BackgroundModel, BackgroundParams, BackgroundParts
 pub use masking::chroma::chroma;
 pub use masking::label::Label;
 pub use masking::plain_background::PlainBackground;
+pub use masking::scene::SceneModel;
 pub use masking::segment::Segment;
 pub use masking::skin::{BUILTIN_SOURCE, SkinModel, SkinParams, SkinParts, SkinTrainer};
 pub use silhouette::contour::Contour;

@@ -8,6 +8,7 @@ pub(crate) mod landmarks;
 mod mp4;
 pub(crate) mod pictures;
 pub(crate) mod reader;
+mod scene;
 pub(crate) mod source;
 pub(crate) mod timeline;
 pub(crate) mod timestamps;

@@ -10,7 +10,7 @@ use phalanx_io::landmarks::LandmarkTrack;
 
 use super::assign::assign;
 use super::reader::Reader;
-use super::{landmarks, timestamps};
+use super::{landmarks, scene, timestamps};
 use crate::segment::{Pictures, SegmentArguments};
 
 #[derive(Args, Default)]
@@ -72,7 +72,15 @@ impl Source {
             PathBuf::from(named.map_or(given.as_str(), |(_, path)| path))
         };
         let landmark_paths = arguments.landmarks.iter().map(path).collect();
-        let pictures = arguments.segment.pictures()?;
+        let mut pictures = arguments.segment.pictures()?;
+        if let Pictures::Photographs(_, scenes) = &mut pictures
+            && arguments.segment.segment.is_none()
+        {
+            let recordings = cameras.iter().zip(&paths);
+            let recordings =
+                recordings.filter_map(|(camera, path)| Some((camera, path.as_deref()?)));
+            *scenes = scene::learn(recordings);
+        }
         let times_path = arguments.timestamps.clone();
         Ok(Self { cameras, paths, landmarks, landmark_paths, times, times_path, pictures })
     }
@@ -98,7 +106,7 @@ impl Source {
             Pictures::Masks => {
                 "look at the masks: the hand and its arm are white, all else is black"
             }
-            Pictures::Photographs(_) => "look at the light, or give masks",
+            Pictures::Photographs(..) => "look at the light, or give masks",
         }
     }
 

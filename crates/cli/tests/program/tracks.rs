@@ -160,6 +160,38 @@ fn photographs_without_colour_are_told() {
     assert!(outcome.err.contains("the picture has no colour"), "{outcome:?}");
 }
 
+/// Boards pass for skin, and are told from the hand by what moves.
+#[test]
+fn a_hand_before_what_looks_like_skin_is_tracked() {
+    let desk = recorded(12);
+    for (camera, frame) in CAMERAS.iter().flat_map(|camera| (0..12).map(move |k| (camera, k))) {
+        let name = format!("take/{camera}/{frame:04}.png");
+        let mask = desk.open(&name).to_luma8();
+        let photograph = image::RgbImage::from_fn(mask.width(), mask.height(), |x, y| {
+            let grain = ((x * 7919 + y * 104_729 + frame) % 5) as u8;
+            let colour = match mask.get_pixel(x, y).0[0] > 127 {
+                true => [205, 150, 130],
+                false if x / 32 % 2 == 0 => [180, 130, 80],
+                false => [90, 95, 100],
+            };
+            image::Rgb(colour.map(|level| level + grain))
+        });
+        desk.save(&name, &photograph.into());
+    }
+    let tracked = |segment: &[&str]| {
+        let given = ["track", "--rig", "rig.toml", "take", "--out", "t.csv"];
+        run(desk.folder(), given.iter().chain(segment))
+    };
+    let learnt = tracked(&[]);
+    let said = "what stands still looks like skin; its colours were learnt from 12 pictures";
+    assert_eq!(learnt.code, Some(0), "{learnt:?}");
+    assert_eq!(learnt.err.matches(said).count(), 2, "{learnt:?}");
+    let error = error_mm(&take(&desk, "t.csv"));
+    assert!(error < 8.0, "{error} mm");
+    let by_colour = tracked(&["--segment", "skin"]);
+    assert!(!by_colour.err.contains(said), "{by_colour:?}");
+}
+
 /// One camera tells no hand's proportions: none are said, nor kept for another recording.
 #[test]
 fn a_hand_that_the_recording_does_not_tell_is_nobodys() {

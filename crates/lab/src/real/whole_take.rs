@@ -5,19 +5,24 @@ use std::sync::OnceLock;
 
 use anyhow::{Result, anyhow};
 use glam::{DAffine3, DVec3};
-use image::DynamicImage;
+use image::{DynamicImage, RgbImage};
 use phalanx::{FrameFit, Progress, TakeFit, TakeFrame, TakeSettings, fit_frame, fit_take};
 use phalanx_camera::Camera;
 use phalanx_hand::HandShape;
-use phalanx_segmentation::{AdaptedSkin, Mask, SkinModel};
+use phalanx_sampling::spread_subset;
+use phalanx_segmentation::{Mask, SceneModel, Segment, SkinModel};
 
 use super::method::{Found, Method, Outcome, Sequence, each_frame};
 use super::take::Input;
 use crate::clock::timed;
 
+/// The seed by which the frames are drawn whose photographs tell what stands still.
+const SUBSET_SEED: u64 = 0;
+
 /// The fits of a take through some cameras, each made when it is first asked for.
 pub struct Fits {
-    skin: SkinModel,
+    /// What tells the hand in each camera's photographs.
+    segmenters: OnceLock<Vec<Box<dyn Segment>>>,
     /// One for each input.
     fits: [OnceLock<Fitted>; Input::ALL.len()],
 }
@@ -31,7 +36,7 @@ struct Fitted {
 impl Fits {
     /// Nothing is fitted yet.
     pub fn new() -> Self {
-        Self { skin: SkinModel::builtin(), fits: [const { OnceLock::new() }; Input::ALL.len()] }
+        Self { segmenters: OnceLock::new(), fits: [const { OnceLock::new() }; Input::ALL.len()] }
     }
 
     fn of(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<&Fitted> {
@@ -61,7 +66,7 @@ impl Fits {
 
     /// What the cameras saw in the frame of a number; nothing of a camera that is lost then.
     pub fn frame_of(&self, sequence: &Sequence<'_>, number: usize) -> Result<TakeFrame> {
-        let mut frame = self.frame(sequence, number, &sequence.pictures(number)?);
+        let mut frame = self.frame(sequence, number, &sequence.pictures(number)?)?;
         for (view, mask) in frame.masks.iter_mut().enumerate() {
             *mask = mask.take().filter(|_| !sequence.is_lost(view, number));
         }
@@ -74,20 +79,43 @@ impl Fits {
         sequence: &Sequence<'_>,
         number: usize,
         pictures: &[DynamicImage],
-    ) -> TakeFrame {
-        let mask = |picture: &DynamicImage| -> Mask {
-            match sequence.input {
+    ) -> Result<TakeFrame> {
+        let mask = |(view, picture): (usize, &DynamicImage)| -> Result<Option<Mask>> {
+            Ok(Some(match sequence.input {
                 Input::Masks | Input::MasksAndLandmarks => picture.to_luma8().into(),
                 Input::Photographs | Input::Landmarks => {
-                    let photograph = picture.to_rgb8();
-                    AdaptedSkin::new(&self.skin, &photograph).segment(&photograph)
+                    self.segmenters(sequence)?[view].segment(&picture.to_rgb8())?
                 }
-            }
+            }))
         };
-        let mut masks: Vec<Option<Mask>> = pictures.iter().map(mask).map(Some).collect();
+        let mut masks: Vec<Option<Mask>> =
+            pictures.iter().enumerate().map(mask).collect::<Result<_>>()?;
         masks.resize(sequence.views.len(), None);
         let seconds = Some(sequence.seconds(number));
-        TakeFrame { masks, landmarks: sequence.landmarks_of(number), seconds }
+        Ok(TakeFrame { masks, landmarks: sequence.landmarks_of(number), seconds })
+    }
+
+    /// What tells the hand in the photographs of each camera that is used.
+    fn segmenters(&self, sequence: &Sequence<'_>) -> Result<&[Box<dyn Segment>]> {
+        if let Some(segmenters) = self.segmenters.get() {
+            return Ok(segmenters);
+        }
+        let some = spread_subset(sequence.frames.len(), SceneModel::PICTURES, SUBSET_SEED);
+        let mut of_views = vec![Vec::new(); sequence.views.len()];
+        for number in some {
+            for (own, picture) in of_views.iter_mut().zip(sequence.pictures(number)?) {
+                own.push(picture.to_rgb8());
+            }
+        }
+        let segmenter = |photographs: Vec<RgbImage>| -> Result<Box<dyn Segment>> {
+            let skin = SkinModel::builtin();
+            Ok(match SceneModel::learn(&photographs, &skin)? {
+                Some(scene) => Box::new(scene),
+                None => Box::new(skin),
+            })
+        };
+        let segmenters = of_views.into_iter().map(segmenter).collect::<Result<_>>()?;
+        Ok(self.segmenters.get_or_init(|| segmenters))
     }
 }
 
@@ -157,7 +185,7 @@ impl Method for FramesAlone<'_> {
             || (),
             |(), number, pictures| {
                 let take = take.as_ref().map_err(|error| anyhow!("{error}"))?;
-                let fit = fit_frame(&cameras, &self.0.frame(sequence, number, pictures), take)?;
+                let fit = fit_frame(&cameras, &self.0.frame(sequence, number, pictures)?, take)?;
                 Ok(of_take(&cameras, take, &fit))
             },
         )

@@ -7,16 +7,9 @@ use crate::mask::cleanup::Cleanup;
 use crate::mask::components::{Class, Components};
 use crate::mask::majority::Majority;
 use crate::mask::morphology::{dilate, erode};
-use crate::masking::chroma::chroma;
-use crate::masking::histogram::smooth;
+use crate::masking::colour_cells::{CELLS, General, cell_of};
+use crate::masking::label::Label;
 use crate::masking::skin::SkinModel;
-
-/// Cells of luma, Cb and Cr that a picture's colours are counted in. A picture has too few pixels for
-/// cells of single levels; light changes luma more than it changes chroma.
-const SIDES: [usize; 3] = [16, 64, 64];
-
-/// Passes of the smoothing kernel over the counts: its standard deviation is one cell.
-const SMOOTHING: u32 = 2;
 
 /// How often the picture's colours are counted; the second mask differs from the first by the colours
 /// that the model alone did not know, further ones hardly from the second.
@@ -65,7 +58,7 @@ impl AdaptedSkin {
         let mut adapted = Self { table: Vec::new() };
         for _ in 0..ROUNDS {
             let sure = SurePixels::of(levels, picture.width() as usize);
-            adapted.table = general.decide(&sure, &cells, model.parts().params.prior);
+            adapted.table = decide(&general, &sure, &cells, model.parts().params.prior);
             levels = cells.iter().map(|&cell| adapted.table[cell]).collect();
         }
         adapted
@@ -78,18 +71,6 @@ impl AdaptedSkin {
         mask.iter_mut().zip(colours).for_each(|(level, &rgb)| *level = self.table[cell_of(rgb)]);
         mask
     }
-}
-
-/// The cell of a colour, Cr contiguous.
-#[inline]
-fn cell_of(rgb: [u8; 3]) -> usize {
-    let [luma, blue, red] = SIDES;
-    let [r, g, b] = rgb.map(usize::from);
-    // ITU-R BT.601, as `chroma`.
-    let y = (77 * r + 150 * g + 29 * b) >> 8;
-    let (cb, cr) = chroma(rgb);
-    let [y, cb, cr] = [y * luma, usize::from(cb) * blue, usize::from(cr) * red].map(|v| v >> 8);
-    (y * blue + cb) * red + cr
 }
 
 /// Pixels of which a mask leaves no doubt what they are.
@@ -119,45 +100,20 @@ impl SurePixels {
     }
 }
 
-/// How likely a model has it that each chroma is skin, and anything else, in the cells of one luma.
-struct General([Vec<f64>; 2]);
-
-impl General {
-    /// The model knows nothing of luma: to it all are as likely.
-    fn of(model: &SkinModel) -> Self {
-        let [luma, blue, red] = SIDES;
-        let (high, wide) = (256 / blue, 256 / red);
-        let mut planes = [vec![0.0; blue * red], vec![0.0; blue * red]];
-        for (cb, cr) in (0..=255_u8).flat_map(|cb| (0..=255_u8).map(move |cr| (cb, cr))) {
-            let cell = usize::from(cb) / high * red + usize::from(cr) / wide;
-            let densities = model.densities(cb, cr).map(|density| density / luma as f64);
-            planes.iter_mut().zip(densities).for_each(|(plane, density)| plane[cell] += density);
-        }
-        Self(planes)
-    }
-
-    /// Bayes' rule in every cell, from this and the colours of sure pixels.
-    fn decide(&self, sure: &SurePixels, cells: &[usize], prior: f64) -> Vec<u8> {
-        let is_skin = sure.skin.iter().map(|&level| Mask::is_hand_level(level));
-        let is_other = sure.near_skin.iter().map(|&level| !Mask::is_hand_level(level));
-        let [skin, other] = &self.0;
-        let skin = adapted(skin, cells, is_skin);
-        let other = adapted(other, cells, is_other);
-        let is_skin = |(s, n): (&f64, &f64)| prior * s > (1.0 - prior) * n;
-        skin.iter().zip(&other).map(|pair| if is_skin(pair) { 255 } else { 0 }).collect()
-    }
+/// Bayes' rule in every cell, from what is known of all pictures and the colours of sure pixels.
+fn decide(general: &General, sure: &SurePixels, cells: &[usize], prior: f64) -> Vec<u8> {
+    let is_skin = sure.skin.iter().map(|&level| Mask::is_hand_level(level));
+    let is_other = sure.near_skin.iter().map(|&level| !Mask::is_hand_level(level));
+    let skin = general.adapted(Label::Skin, counts(cells, is_skin));
+    let other = general.adapted(Label::NonSkin, counts(cells, is_other));
+    let is_skin = |(s, n): (&f64, &f64)| prior * s > (1.0 - prior) * n;
+    skin.iter().zip(&other).map(|pair| if is_skin(pair) { 255 } else { 0 }).collect()
 }
 
-/// The mean of a density and that of the selected pixels; the density itself where none is.
-fn adapted(general: &[f64], cells: &[usize], selected: impl Iterator<Item = bool>) -> Vec<f64> {
-    let mut counts = vec![0.0; SIDES.iter().product()];
+/// How many of the selected pixels have a colour of each cell.
+fn counts(cells: &[usize], selected: impl Iterator<Item = bool>) -> Vec<f64> {
+    let mut counts = vec![0.0; CELLS];
     let own = cells.iter().zip(selected).filter(|(_, selected)| *selected);
     own.for_each(|(&cell, _)| counts[cell] += 1.0);
-    let total: f64 = counts.iter().sum();
-    let general = general.iter().cycle();
-    if total == 0.0 {
-        return general.take(counts.len()).copied().collect();
-    }
-    smooth(&mut counts, &SIDES, SMOOTHING);
-    counts.iter().zip(general).map(|(count, general)| 0.5 * (general + count / total)).collect()
+    counts
 }

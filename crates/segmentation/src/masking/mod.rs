@@ -2,11 +2,15 @@
 
 pub(crate) mod adapted_skin;
 pub(crate) mod background;
+pub(crate) mod box_mean;
 pub(crate) mod chroma;
+pub(crate) mod colour_cells;
 pub(crate) mod histogram;
 pub(crate) mod label;
+pub(crate) mod motion;
 pub(crate) mod otsu;
 pub(crate) mod plain_background;
+pub(crate) mod scene;
 pub(crate) mod segment;
 pub(crate) mod skin;
 pub(crate) mod skin_file;

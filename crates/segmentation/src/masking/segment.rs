@@ -9,6 +9,7 @@ use crate::mask::Mask;
 use crate::masking::adapted_skin::AdaptedSkin;
 use crate::masking::background::BackgroundModel;
 use crate::masking::plain_background::PlainBackground;
+use crate::masking::scene::SceneModel;
 use crate::masking::skin::SkinModel;
 
 /// Tells the hand from the rest of a picture. Implement it to plug in a segmenter of your own.
@@ -53,6 +54,13 @@ impl Segment for SkinModel {
 
 /// By its difference from the recorded background of the same camera, at the size of the picture.
 impl Segment for BackgroundModel {
+    fn segment(&self, picture: &RgbImage) -> Result<Mask> {
+        Self::segment(self, picture)
+    }
+}
+
+/// By what was learnt from the recording that the picture is of.
+impl Segment for SceneModel {
     fn segment(&self, picture: &RgbImage) -> Result<Mask> {
         Self::segment(self, picture)
     }

@@ -2,8 +2,8 @@
 
 use phalanx_segmentation::{
     BackgroundModel, BackgroundParams, BackgroundParts, Cleanup, Contour, CropWindow, Error,
-    Forearm, ForearmCue, HandDetection, HandDetector, Label, PlainBackground, Silhouette,
-    SkinModel, SkinParams, SkinParts, SkinTrainer, Workspace, WristModel, WristTrainer,
+    Forearm, ForearmCue, HandDetection, HandDetector, Label, PlainBackground, SceneModel,
+    Silhouette, SkinModel, SkinParams, SkinParts, SkinTrainer, Workspace, WristModel, WristTrainer,
 };
 
 const fn shared<T: Send + Sync>() {}
@@ -32,6 +32,7 @@ shared!(
     SkinParts,
     SkinTrainer,
     PlainBackground,
+    SceneModel,
     Workspace,
     WristModel,
     WristTrainer,

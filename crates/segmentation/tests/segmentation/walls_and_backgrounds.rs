@@ -2,7 +2,8 @@
 
 use image::{Rgb, RgbImage};
 use phalanx_segmentation::{
-    BackgroundModel, BackgroundParams, BackgroundParts, Error, Mask, PlainBackground,
+    BackgroundModel, BackgroundParams, BackgroundParts, Error, Mask, PlainBackground, SceneModel,
+    SkinModel,
 };
 
 const SIZE: (u32, u32) = (48, 36);
@@ -102,4 +103,56 @@ fn a_background_survives_its_parts_and_refuses_what_does_not_fit() {
     for parts in bad {
         assert!(matches!(BackgroundModel::from_parts(parts), Err(Error::Parameter { .. })));
     }
+}
+
+const BOARD: [u8; 3] = [180, 130, 80];
+const DESK: [u8; 3] = [90, 95, 100];
+
+/// A hand whose arm stays, and whose fingers are as long as `reach` says, over a board or not.
+fn over_a_board(reach: u32, board: [u8; 3]) -> (RgbImage, Mask) {
+    let mask = Mask::from_fn(192, 144, |x, y| {
+        let is_arm = (40..112).contains(&y) && x < 60;
+        let is_finger = (40..112).contains(&y) && y % 18 < 11 && x < 60 + reach;
+        is_arm || is_finger
+    });
+    let picture = RgbImage::from_fn(192, 144, |x, y| {
+        let background = if y < 76 { board } else { DESK };
+        let noise = ((x * 7919 + y * 104_729 + reach * 31) % 5) as u8;
+        let colour = if mask.is_hand(x, y) { [205, 150, 130] } else { background };
+        Rgb(colour.map(|level| level + noise))
+    });
+    (picture, mask)
+}
+
+fn learnt_over(board: [u8; 3], reaches: impl Iterator<Item = u32>) -> Option<SceneModel> {
+    let pictures: Vec<RgbImage> = reaches.map(|reach| over_a_board(reach, board).0).collect();
+    SceneModel::learn(&pictures, &SkinModel::builtin()).unwrap()
+}
+
+/// Also where arm and palm never leave their place, and fingers are seen over the board.
+#[test]
+fn what_moves_tells_the_hand_from_a_board_that_looks_like_skin() {
+    let skin = SkinModel::builtin();
+    let scene = learnt_over(BOARD, (0..20).map(|k| 5 * k)).unwrap();
+    for reach in [0, 30, 95] {
+        let (picture, truth) = over_a_board(reach, BOARD);
+        let overlap = scene.segment(&picture).unwrap().iou(&truth);
+        let by_colour = skin.classify(&picture).iou(&truth);
+        assert!(overlap > 0.85 && by_colour < 0.6, "{reach}: {overlap}, by colour {by_colour}");
+    }
+}
+
+#[test]
+fn a_scene_is_learnt_only_where_colour_does_not_tell() {
+    assert!(learnt_over(DESK, (0..20).map(|k| 5 * k)).is_none(), "the desk is not like skin");
+    assert!(learnt_over(BOARD, (0..20).map(|_| 50)).is_none(), "nothing moves");
+    let skin = SkinModel::builtin();
+    assert!(matches!(SceneModel::learn(&[], &skin), Err(Error::NoFrames)));
+    let (one, other) = (RgbImage::new(4, 4), RgbImage::new(5, 4));
+    let sizes = SceneModel::learn(&[one, other], &skin);
+    assert!(matches!(sizes, Err(Error::SizeMismatch { .. })));
+    assert!(SceneModel::learn(&[RgbImage::new(0, 0)], &skin).unwrap().is_none());
+    let scene = learnt_over(BOARD, (0..20).map(|k| 5 * k)).unwrap();
+    let smaller = scene.segment(&RgbImage::new(191, 144));
+    assert!(matches!(smaller, Err(Error::SizeMismatch { .. })));
 }

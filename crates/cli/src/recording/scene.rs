@@ -1,0 +1,49 @@
+//! What stands still in a recording and looks like skin.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use image::RgbImage;
+use phalanx::{Progress, photograph_from};
+use phalanx_camera::Camera;
+use phalanx_sampling::spread_subset;
+use phalanx_segmentation::{SceneModel, SkinModel};
+
+use crate::progress::Bar;
+
+/// The seed by which the pictures are drawn that are learnt from.
+const SUBSET_SEED: u64 = 0;
+
+/// Learns the scenes of those cameras whose recordings need it, which is said on standard error. What cannot be read is
+/// said when the recording is read for its hands.
+pub(crate) fn learn<'a>(
+    recordings: impl Iterator<Item = (&'a Camera, &'a Path)>,
+) -> BTreeMap<String, SceneModel> {
+    let recordings: Vec<_> = recordings.collect();
+    let skin = SkinModel::builtin();
+    let mut scenes = BTreeMap::new();
+    let bar = Bar::new();
+    bar.begin("look at what stands still", recordings.len());
+    for (camera, path) in recordings {
+        let photographs = some_of(path);
+        if let Ok(Some(scene)) = SceneModel::learn(&photographs, &skin) {
+            bar.say(&format!(
+                "camera '{}': what stands still looks like skin; its colours were learnt from {} pictures \
+                 (not with --segment skin)",
+                camera.name,
+                photographs.len()
+            ));
+            scenes.insert(camera.name.clone(), scene);
+        }
+        bar.step();
+    }
+    scenes
+}
+
+/// Some photographs from everywhere in a recording.
+fn some_of(path: &Path) -> Vec<RgbImage> {
+    let Ok(mut recording) = super::open(path) else { return Vec::new() };
+    let some = spread_subset(recording.stamps().len(), SceneModel::PICTURES, SUBSET_SEED);
+    let read = some.into_iter().filter_map(|frame| recording.read(frame).ok());
+    read.map(|picture| photograph_from(&picture)).collect()
+}
