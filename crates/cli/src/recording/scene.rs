@@ -14,6 +14,9 @@ use crate::progress::Bar;
 /// The seed by which the pictures are drawn that are learnt from.
 const SUBSET_SEED: u64 = 0;
 
+/// A minute of most videos, which are decoded from their beginning: the pictures are drawn from no more frames.
+const MOST_FRAMES: usize = 1800;
+
 /// Learns the scenes of those cameras whose recordings need it, which is said on standard error. What cannot be read is
 /// said when the recording is read for its hands.
 pub(crate) fn learn<'a>(
@@ -40,10 +43,11 @@ pub(crate) fn learn<'a>(
     scenes
 }
 
-/// Some photographs from everywhere in a recording.
+/// Some photographs of a recording, from everywhere in its beginning.
 fn some_of(path: &Path) -> Vec<RgbImage> {
     let Ok(mut recording) = super::open(path) else { return Vec::new() };
-    let some = spread_subset(recording.stamps().len(), SceneModel::PICTURES, SUBSET_SEED);
+    let frames = recording.stamps().len().min(MOST_FRAMES);
+    let some = spread_subset(frames, SceneModel::PICTURES, SUBSET_SEED);
     let read = some.into_iter().filter_map(|frame| recording.read(frame).ok());
     read.map(|picture| photograph_from(&picture)).collect()
 }
