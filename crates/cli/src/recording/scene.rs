@@ -18,7 +18,7 @@ const SUBSET_SEED: u64 = 0;
 const MOST_FRAMES: usize = 1800;
 
 /// Learns the scenes of those cameras whose recordings need it, which is said on standard error. What cannot be read is
-/// said when the recording is read for its hands.
+/// said when the recording is read for its hands; of pictures of several sizes no scene is learnt.
 pub(crate) fn learn<'a>(
     recordings: impl Iterator<Item = (&'a Camera, &'a Path)>,
 ) -> BTreeMap<String, SceneModel> {
@@ -31,8 +31,8 @@ pub(crate) fn learn<'a>(
         let photographs = some_of(path);
         if let Ok(Some(scene)) = SceneModel::learn(&photographs, &skin) {
             bar.say(&format!(
-                "camera '{}': what stands still looks like skin; its colours were learnt from {} pictures \
-                 (not with --segment skin)",
+                "camera '{}': what stands still looks like skin; its colours were learnt from {} pictures; \
+                 --segment skin goes by colour alone",
                 camera.name,
                 photographs.len()
             ));
