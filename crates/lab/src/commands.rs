@@ -12,7 +12,7 @@ use crate::eval::{
     table1, tracking,
 };
 use crate::figures::pictures;
-use crate::models::{skin_model, wrist_model};
+use crate::models::{end_model, skin_model, wrist_model};
 use crate::paper;
 use crate::paper::page;
 use crate::real::{self, contact_sheet, drawn_takes, interior_edges, two_camera};
@@ -65,6 +65,8 @@ pub enum Command {
     Report(page::Arguments),
     /// Train the skin model that the segmentation crate ships.
     SkinModel(skin_model::Arguments),
+    /// Train the model of an arm's ends that the segmentation crate ships, and say how often it is right.
+    EndModel(end_model::Arguments),
     /// Train the wrist model that the segmentation crate ships, and say how well it finds wrists.
     WristModel(wrist_model::Arguments),
     /// Draw silhouettes, contours and axes over photographs, and measure the skin model.
@@ -111,6 +113,7 @@ impl Command {
             Self::Experiment(arguments) => paper::run(arguments)?,
             Self::Report(arguments) => return page::run(arguments),
             Self::SkinModel(arguments) => skin_model::run(arguments)?,
+            Self::EndModel(arguments) => end_model::run(arguments)?,
             Self::WristModel(arguments) => wrist_model::run(arguments)?,
             Self::ContactSheet(arguments) => contact_sheet::run(arguments)?,
             Self::TwoCamera(arguments) => two_camera::run(arguments)?,

@@ -84,6 +84,9 @@ pub enum Error {
         /// What is wrong with it.
         reason: &'static str,
     },
+    /// Bytes that are not a model of an arm's ends, or parts that make none.
+    #[error("not a model of an arm's ends: {0}")]
+    EndModel(&'static str),
     /// Nothing in the picture stands out from the wall.
     #[error(
         "no contrast: hand and wall differ by {difference:.1} grey levels, at least {needed} are needed"

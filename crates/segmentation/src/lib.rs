@@ -10,6 +10,7 @@ mod property;
 mod silhouette;
 
 pub use detect::detector::{HandDetection, HandDetector};
+pub use detect::end_model::{EndModel, EndParts};
 pub use detect::wrist_model::WristModel;
 pub use detect::wrist_trainer::WristTrainer;
 pub use error::{Error, Result};

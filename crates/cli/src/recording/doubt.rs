@@ -18,6 +18,7 @@ pub(crate) fn code(doubt: &FitDoubt, cameras: &[Camera]) -> String {
         FitDoubt::Exchanged { views: [one, other] } => {
             format!("{EXCHANGED}{}+{}", cameras[*one].name, cameras[*other].name)
         }
+        FitDoubt::OtherEnd => "other-end".to_owned(),
         FitDoubt::PoorFit { view, .. } => format!("poor-fit:{}", cameras[*view].name),
         FitDoubt::PoorLandmarks { view, .. } => format!("poor-landmarks:{}", cameras[*view].name),
         FitDoubt::CutOff { view } => format!("cut-off:{}", cameras[*view].name),

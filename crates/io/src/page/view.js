@@ -156,6 +156,7 @@ const DOUBTS = {
   "poor-landmarks": "the landmarks of that camera are of something else than the estimated hand",
   "other-side": "a hand of the other side explains the recording better",
   "exchanged": "these two cameras seem to have each other's pictures",
+  "other-end": "the hand may be at the other end of the arm",
   "open": "the cameras leave the pose open: it has no deviations",
   "cut-off": "part of the hand is beyond the border of that camera's picture, and no two cameras show all of it",
 };

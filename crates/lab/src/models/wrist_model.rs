@@ -9,9 +9,9 @@ use glam::{DAffine3, DQuat, DVec2, DVec3};
 use phalanx::ItemRng;
 use phalanx_camera::{Camera, Intrinsics};
 use phalanx_hand::{Dof, HandShape, sample_pose};
-use phalanx_render::Renderer;
-use phalanx_segmentation::{Cleanup, HandDetector, Mask, WristModel, WristTrainer};
+use phalanx_segmentation::{Cleanup, HandDetector, WristModel, WristTrainer};
 
+use super::drawn_hand::DrawnHand;
 use crate::files;
 
 /// Hands that are learnt from, and as many that are tested on.
@@ -30,23 +30,13 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// A silhouette and what it is of, in pixels.
-struct Sample {
-    mask: Mask,
-    wrist: DVec2,
-    /// Along the forearm.
-    direction: DVec2,
-    /// From the wrist to the furthest joint.
-    length: f64,
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let hand = files::hand(None)?;
     let mut trainer = WristTrainer::default();
     let mut learnt = 0;
     for number in 0..SAMPLES {
         if let Some(sample) = sample(&hand, number)? {
-            learnt += usize::from(trainer.add(&sample.mask, sample.wrist.to_array())?);
+            learnt += usize::from(trainer.add(&sample.mask, sample.wrist().to_array())?);
         }
     }
     let model = trainer.finish()?;
@@ -63,7 +53,8 @@ fn test(hand: &HandShape, model: &WristModel) -> Result<String> {
     for number in SAMPLES..2 * SAMPLES {
         let Some(sample) = sample(hand, number)? else { continue };
         let found = finder.find(&sample.mask, &Cleanup::default(), model)?[0];
-        offs.push(sample.wrist.distance(DVec2::from_array(found.wrist)) / sample.length);
+        let off = sample.wrist().distance(DVec2::from_array(found.wrist));
+        offs.push(off / sample.length());
         let direction = DVec2::from_array(found.direction);
         angles.push(sample.direction.angle_to(direction).abs().to_degrees());
         strange.push(found.mahalanobis2);
@@ -81,7 +72,7 @@ fn test(hand: &HandShape, model: &WristModel) -> Result<String> {
 
 /// A hand of its own in a pose of its own, seen from anywhere but nearly along its arm, its arm cut
 /// anywhere; nothing where its fingertips are not in the picture.
-fn sample(hand: &HandShape, number: u64) -> Result<Option<Sample>> {
+fn sample(hand: &HandShape, number: u64) -> Result<Option<DrawnHand>> {
     let mut random = ItemRng::new(SEED, number);
     let hand = hand.scaled(|| random.between(1.0 - SPREAD, 1.0 + SPREAD));
     let mut pose = sample_pose(|| random.uniform());
@@ -97,16 +88,10 @@ fn sample(hand: &HandShape, number: u64) -> Result<Option<Sample>> {
     let up = DVec3::new(turned.cos(), 0.0, turned.sin());
     let inside = Intrinsics::pinhole(SIDE, SIDE, focal);
     let camera = Camera::look_at("c", inside, aim + DVec3::Y * away, aim, up)?;
-    let posed = hand.pose(&pose, &rest);
-    let pixels: Option<Vec<DVec2>> = posed.joints.iter().map(|&j| camera.project(j)).collect();
-    let Some(pixels) = pixels else { return Ok(None) };
     let within = |p: &DVec2| {
         (p - DVec2::splat(f64::from(SIDE) / 2.0)).abs().max_element()
             < f64::from(SIDE) / 2.0 - MARGIN
     };
-    let behind = camera.project(rest.transform_point3(DVec3::NEG_Z));
-    let (true, Some(behind)) = (pixels.iter().all(within), behind) else { return Ok(None) };
-    let length = pixels.iter().map(|p| p.distance(pixels[0])).fold(0.0, f64::max);
-    let mask = Mask::from(Renderer::new(&camera)?.silhouette(&posed.primitives)?);
-    Ok(Some(Sample { mask, wrist: pixels[0], direction: (pixels[0] - behind).normalize(), length }))
+    let drawn = DrawnHand::of(&hand, &pose, &rest, &camera)?;
+    Ok(drawn.filter(|drawn| drawn.joints.iter().all(within)))
 }

@@ -40,6 +40,8 @@ struct Kind {
     side: Side,
     motion: Motion,
     company: Company,
+    /// How wide a picture is where the hand works, mm.
+    shown: f64,
 }
 
 /// How poses follow each other.
@@ -54,7 +56,7 @@ enum Motion {
     Passing(usize),
 }
 
-const KINDS: [Kind; 10] = [
+const KINDS: [Kind; 11] = [
     kind("one", 1, (640, 480)),
     kind("two", 2, (640, 480)),
     Kind { size: 0.92, ..kind("three", 3, (480, 360)) },
@@ -65,11 +67,12 @@ const KINDS: [Kind; 10] = [
     Kind { motion: Motion::Passing(10), ..kind("passing", 3, (480, 360)) },
     Kind { company: Company::OtherHand, ..kind("both-hands", 3, (480, 360)) },
     Kind { company: Company::Rod, ..kind("rod", 3, (480, 360)) },
+    Kind { shown: 2.2 * SHOWN, ..kind("sleeve", 2, (640, 480)) },
 ];
 
 const fn kind(name: &'static str, cameras: usize, picture: (u32, u32)) -> Kind {
     let (side, motion, company) = (Side::Right, Motion::Smooth(10), Company::None);
-    Kind { name, cameras, picture, size: 1.0, side, motion, company }
+    Kind { name, cameras, picture, size: 1.0, side, motion, company, shown: SHOWN }
 }
 
 /// How far behind where it works a hand is that comes or leaves, mm: no picture shows it.
@@ -78,7 +81,7 @@ const AWAY: f64 = 500.0;
 /// How far bones and radii differ from the mean adult's, beside the size.
 const SPREAD: f64 = 0.1;
 
-/// How far off the cameras stand, mm, and how wide a picture is there.
+/// How far off the cameras stand, mm, and how wide most pictures are there: arms leave them.
 const DISTANCE: f64 = 600.0;
 const SHOWN: f64 = 420.0;
 
@@ -147,7 +150,7 @@ impl Kind {
         let (sin, cos) = at.sin_cos();
         let aside = DVec3::new(sin, cos, random.between(-0.4, 0.4)).normalize();
         let (width, height) = self.picture;
-        let focal = f64::from(width) * DISTANCE / SHOWN;
+        let focal = f64::from(width) * DISTANCE / self.shown;
         let middle = rest.transform_point3(80.0 * DVec3::Z);
         let position = middle + DISTANCE * rest.transform_vector3(aside);
         let inside = Intrinsics::pinhole(width, height, focal);

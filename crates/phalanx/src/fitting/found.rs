@@ -22,6 +22,8 @@ pub(super) struct Found {
     /// The views that disagree with the others, in this frame or in the whole take, and are left out: the crops, then the
     /// points.
     pub(super) left_out: Vec<bool>,
+    /// How likely it is that the hand is at the arm's other end, by what hangs together with it.
+    pub(super) backwards: f64,
     /// How far the views together are from agreeing with it.
     pub(super) misfit: f64,
 }
@@ -43,7 +45,8 @@ impl Found {
             steps: 0,
         };
         let (crops, points, left_out) = (Vec::new(), Vec::new(), Vec::new());
-        Self { rest: DAffine3::IDENTITY, refined, crops, points, left_out, misfit }
+        let backwards = 0.0;
+        Self { rest: DAffine3::IDENTITY, refined, crops, points, left_out, backwards, misfit }
     }
 
     /// The hand's frame: its origin at the wrist, z along the forearm.
@@ -68,7 +71,8 @@ impl Found {
     /// How far all views are from agreeing with it; those that are left out explain nothing.
     pub(super) fn misfit_of_all_views(&self) -> f64 {
         let none_left_out = vec![false; self.left_out.len()];
-        misfit::of_fit(&self.refined, views_used(&self.crops, &self.points, &none_left_out))
+        let views = views_used(&self.crops, &self.points, &none_left_out);
+        misfit::of_fit(&self.refined, views) + self.backwards
     }
 
     /// The pose in another frame of rest.

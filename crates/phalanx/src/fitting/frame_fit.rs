@@ -225,7 +225,7 @@ impl FrameFitter<'_> {
         }
         let hypothesis = |refined: PoseFit| Found {
             rest,
-            misfit: misfit::of_fit(&refined, used),
+            misfit: misfit::of_fit(&refined, used) + found.backwards,
             refined,
             left_out: left_out.to_vec(),
             ..found.clone()

@@ -9,7 +9,9 @@ use super::points::CameraPoints;
 use super::take_frame::TakeFrame;
 
 use crate::error::{Error, Result};
-use crate::localize::{Arm, BoundingSphere, Detections, HandCrop, Placement, associate};
+use crate::localize::{
+    Arm, BoundingSphere, Detections, HandCrop, Placement, associate, probability,
+};
 
 /// Placements of a frame that are tried.
 const PLACEMENTS: usize = 8;
@@ -105,6 +107,15 @@ impl Sight {
         let placements = associate(&detections, PLACEMENTS);
         let points = CameraPoints::of(cameras, landmarks)?;
         Ok(Self { views, detections, placements, points })
+    }
+
+    /// How likely it is that the hand is at the other end of the arm than where a frame has it.
+    pub(super) fn backwards(&self, frame: &DAffine3) -> f64 {
+        let odds =
+            |view: &Detections| view.backwards_log_odds(frame.translation, frame.matrix3.z_axis);
+        let told = self.detections.iter().map(odds).filter(|odds| *odds != 0.0);
+        let sum: f64 = told.clone().sum();
+        if told.count() == 0 { 0.0 } else { probability(sum) }
     }
 
     /// What each view sees of a ball in space; `None` of a view without anything like a hand, or for

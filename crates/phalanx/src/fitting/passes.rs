@@ -1,7 +1,7 @@
 //! Passes over all frames of a take.
 
 use phalanx_camera::Camera;
-use phalanx_hand::Pose;
+use phalanx_hand::{HandShape, Pose};
 use rayon::prelude::*;
 
 use super::chain::likeliest;
@@ -115,8 +115,8 @@ fn neighbours(
     before.chain((k + 1..found.len()).filter_map(of).take(NEIGHBOURS)).collect()
 }
 
-/// The frames whose views say something else than their poses, each looked for once more where the nearest
-/// frames are of which that is not so. What explains more of the views is kept.
+/// The frames whose views say something else than their poses, or whose arms turn round, each looked for once more where
+/// the nearest frames are of which that is not so. What explains more of the views is kept.
 pub(super) fn recovered(
     cameras: &[Camera],
     frames: &[TakeFrame],
@@ -132,11 +132,15 @@ pub(super) fn recovered(
     let right: Vec<bool> = found.par_iter().map(is_right).collect::<Result<_>>()?;
     let once = |k: usize| -> Result<Option<Found>> {
         let near = neighbours(found, k, |other| right[other]);
-        if right[k] || near.is_empty() {
+        let is_turned = |own: &Option<Found>| {
+            own.as_ref().is_some_and(|own| is_turned(own, &near, fitter.hand))
+        };
+        if right[k] && !is_turned(&found[k]) || near.is_empty() {
             return Ok(found[k].clone());
         }
         let places: Vec<_> = near.iter().map(|(_, near)| near.frame(fitter.hand)).collect();
-        let other = search::near(fitter, &Sight::of(cameras, &frames[k])?, &places)?;
+        let search = if is_turned(&found[k]) { search::at } else { search::near };
+        let other = search(fitter, &Sight::of(cameras, &frames[k])?, &places)?;
         let near: Vec<&Found> = near.iter().map(|(_, found)| *found).collect();
         let other = match &other {
             Some(other) => {
@@ -147,10 +151,23 @@ pub(super) fn recovered(
             None => None,
         };
         progress.step();
-        let misfit = |found: &Option<Found>| found.as_ref().map_or(f64::INFINITY, |own| own.misfit);
+        // What turns round is contradicted by its neighbours as by a view.
+        let misfit = |found: &Option<Found>| {
+            let turned = f64::from(u8::from(is_turned(found)));
+            found.as_ref().map_or(f64::INFINITY, |own| own.misfit + turned)
+        };
         Ok(if misfit(&other) < misfit(&found[k]) { other } else { found[k].clone() })
     };
     (0..found.len()).into_par_iter().map(once).collect()
+}
+
+/// Whether a frame's arm points the other way than those before and after it, which agree: no arm turns round and back so
+/// fast.
+fn is_turned(own: &Found, near: &[(usize, &Found)], hand: &HandShape) -> bool {
+    let arm = |found: &Found| found.frame(hand).matrix3.z_axis;
+    let [(_, before), (_, after)] = near else { return false };
+    let [before, own, after] = [before, own, after].map(arm);
+    before.dot(after) > 0.0 && before.dot(own) < 0.0 && own.dot(after) < 0.0
 }
 
 /// All frames without the views that disagree.

@@ -83,6 +83,8 @@ pub enum FitDoubt {
         /// The cameras' numbers.
         views: [usize; 2],
     },
+    /// What hangs together with the hand looks more like a hand than like its arm: the hand may be at the arm's other end.
+    OtherEnd,
     /// A view that was used shows something else than the pose.
     PoorFit {
         /// The view's number, in the order of the cameras.
@@ -149,6 +151,9 @@ impl Reporter<'_> {
             });
         let views: Vec<ViewFit> =
             (0..agreements.len()).map(|view| self.view(found, view, agreements[view])).collect();
+        if found.backwards > DOUBTED_END {
+            doubts.push(FitDoubt::OtherEnd);
+        }
         for view in used(&views) {
             let Some(agreement) = agreements[view].filter(|_| !found.left_out[view]) else {
                 continue;
@@ -245,6 +250,9 @@ impl Reporter<'_> {
         }
     }
 }
+
+/// A hand is doubted that is at the arm's other end in nine of ten such frames.
+const DOUBTED_END: f64 = 0.9;
 
 /// So many views that show the whole hand place it in space.
 const ENOUGH: usize = 2;

@@ -58,6 +58,7 @@ struct Screening {
     crops: Vec<Option<HandCrop>>,
     evidence: Seen,
     views: usize,
+    backwards: f64,
     misfit: f64,
 }
 
@@ -101,7 +102,16 @@ pub(super) fn near(
     best_of(fitter, sight, by_points(fitter, sight).chain(near))
 }
 
-/// The same of a hand that is known: guesses that are near each other are looked at in the same crops, and only the
+/// Looks for a hand where hands of other frames are, whatever this frame shows elsewhere.
+pub(super) fn at(
+    fitter: &FrameFitter<'_>,
+    sight: &Sight,
+    frames: &[DAffine3],
+) -> Result<Option<Found>> {
+    best_of(fitter, sight, frames.iter().copied().map(Guess::at))
+}
+
+/// Looks near them for a hand that is known: guesses that are near each other are looked at in the same crops, and only the
 /// best of their poses are followed.
 pub(super) fn near_together(
     fitter: &FrameFitter<'_>,
@@ -144,16 +154,16 @@ fn best_of(
     screenings.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
     screenings.truncate(GUESSES);
     let mut best: Option<Found> = None;
-    for Screening { rest, screened, crops, evidence, views, .. } in screenings {
+    for Screening { rest, screened, crops, evidence, views, backwards, .. } in screenings {
         let starts = distinct(&screened, STARTS);
         let postures: Vec<Pose> = starts.iter().take(1).flat_map(starts::postures).collect();
         let fits = fitter.fits(&rest, &evidence, &[starts, postures].concat())?;
         let Some(refined) = fits.into_iter().next() else { continue };
-        let misfit = misfit::of_fit(&refined, views);
+        let misfit = misfit::of_fit(&refined, views) + backwards;
         if best.as_ref().is_none_or(|best| misfit < best.misfit) {
             let points = sight.points.clone();
             let left_out = fitter.weights.left_out(points.len());
-            best = Some(Found { rest, refined, crops, points, left_out, misfit });
+            best = Some(Found { rest, refined, crops, points, left_out, backwards, misfit });
         }
         // A guess that views agree with needs no other beside it.
         if misfit < 1.0 {
@@ -187,8 +197,10 @@ fn screened(fitter: &FrameFitter<'_>, sight: &Sight, guess: Guess) -> Result<Opt
         Follow::Few => fitter.screen_few(&rest, &evidence, &starts)?,
     };
     let Some(first) = screened.first() else { return Ok(None) };
-    let misfit = misfit_of(fitter, &rest, &evidence, &first.pose, views)?;
-    Ok(Some(Screening { rest, screened, crops, evidence, views, misfit }))
+    let frame = starts::frame_at(&first.pose, &rest, fitter.hand);
+    let backwards = sight.backwards(&frame);
+    let misfit = misfit_of(fitter, &rest, &evidence, &first.pose, views)? + backwards;
+    Ok(Some(Screening { rest, screened, crops, evidence, views, backwards, misfit }))
 }
 
 /// How far `views` views together are from agreeing with a pose.

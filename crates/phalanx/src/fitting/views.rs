@@ -43,10 +43,13 @@ impl Contradictions {
         self.used(found).all(|(_, far)| far <= USUAL)
     }
 
-    /// Whether every view that is used agrees, and shows the arm where the fit has it.
+    /// Whether every view that is used agrees, and shows the arm where the fit has it, and the hand at the likelier end
+    /// of it.
     pub(super) fn are_none(&self, fitter: &FrameFitter<'_>, found: &Found) -> bool {
         let leaves = |view: usize| !found.left_out[view] && fitter.leaves_picture(found, view);
-        self.used(found).all(|(_, far)| far <= 1.0) && !(0..found.crops.len()).any(leaves)
+        self.used(found).all(|(_, far)| far <= 1.0)
+            && !(0..found.crops.len()).any(leaves)
+            && found.backwards < 0.5
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use phalanx_camera::{Ray, triangulate};
 
-use crate::localize::detect::{Detections, may_have_arm};
+use crate::localize::detect::{Detections, LEFT_OUT, may_have_arm, probability, unlikely};
 use crate::localize::sighting::{Sighting, arm};
 
 /// A hand in space: where its wrist is, and which way its arm points.
@@ -30,11 +30,6 @@ const WIDTH_SPREAD: f64 = 0.25;
 /// How far an arm is usually seen from where the views together say that it points to, as a share of
 /// its length.
 const TURN: f64 = 0.1;
-
-/// What a view costs in which no candidate is the hand: of 11 numbers of a wrist's shape, two of its
-/// place, one of its width and one of the arm's direction, one in a thousand hands exceeds this squared
-/// distance (χ² with 15 degrees of freedom).
-const LEFT_OUT: f64 = 37.7;
 
 /// What a view costs on average in which a candidate is the hand: as many degrees of freedom.
 const USUAL: f64 = 15.0;
@@ -109,7 +104,7 @@ impl<'a> Seen<'a> {
             // Where the lens maps nothing there is no hand either.
             let sighting = Sighting::new(&view.camera, hand).ok()?;
             let before_arm = if may_have_arm(hand) { 0.0 } else { LEFT_OUT };
-            Some(Candidate { unlikely: hand.mahalanobis2 + before_arm, sighting })
+            Some(Candidate { unlikely: unlikely(hand) + before_arm, sighting })
         };
         Self { view, candidates: view.hands.iter().filter_map(candidate).collect() }
     }
@@ -125,7 +120,9 @@ impl<'a> Seen<'a> {
     fn agreement(&self, wrist: DVec3, arm: DVec3) -> (Option<usize>, f64) {
         let costs = self.candidates.iter().map(|candidate| cost(candidate, wrist, arm));
         let best = costs.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-        let by_mask = USUAL + (LEFT_OUT - USUAL) * self.outside(wrist, arm);
+        let backwards = probability(self.view.backwards_log_odds(wrist, arm));
+        let outside = self.outside(wrist, arm).max(2.0 * backwards - 1.0);
+        let by_mask = USUAL + (LEFT_OUT - USUAL) * outside;
         match best {
             Some((k, cost)) if cost < by_mask => (Some(k), cost),
             _ => (None, by_mask),

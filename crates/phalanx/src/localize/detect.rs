@@ -4,6 +4,11 @@ use glam::{DVec2, DVec3};
 use phalanx_camera::Camera;
 use phalanx_segmentation::{Cleanup, HandDetection, HandDetector, Mask, WristModel};
 
+/// What a view costs in which no candidate is the hand: of 11 numbers of a wrist's shape, two of its
+/// place, one of its width and one of the arm's direction, one in a thousand hands exceeds this squared
+/// distance (χ² with 15 degrees of freedom).
+pub(super) const LEFT_OUT: f64 = 37.7;
+
 /// What may be a hand in one picture. All pixels are those of `camera`, which is the camera resized to
 /// the picture, so that they cannot be taken for those of a picture of another size.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,9 +29,37 @@ const MOST: usize = 6;
 /// 1.6 wide.
 const LARGEST_ARM: f64 = 20.0;
 
+/// How much likelier one end of an arm can be than the other, as the logarithm of the odds: what a view shows is not
+/// surer than that, and views whose masks err alike must not outvote the others.
+const SUREST: f64 = 6.0;
+
+/// An arm whose direction in a picture is shorter than this share of its length is seen from an end.
+const FORESHORTENED: f64 = 0.5;
+
+/// Cosine of the angle up to which a candidate's arm and that of a hand in space look alike.
+const SIDEWAYS: f64 = 0.5;
+
+/// How far ahead of the wrist it is looked where an arm points to in a picture, mm.
+const AHEAD: f64 = 30.0;
+
+/// How far from the wrist a candidate may be that is on the same arm, mm: a hand and a forearm.
+const LIMB: f64 = 430.0;
+
 /// Whether what is behind the wrist may be an arm: behind a finger that is taken for a hand there is more.
 pub(super) fn may_have_arm(hand: &HandDetection) -> bool {
     hand.behind <= LARGEST_ARM * hand.width * hand.width
+}
+
+/// How little a candidate looks like a hand at this end of its arm: a squared distance in standard deviations. One that is
+/// certainly at the other end is as unlikely as a view in which no candidate is the hand.
+pub(crate) fn unlikely(hand: &HandDetection) -> f64 {
+    let backwards = probability(-hand.ahead_log_odds);
+    hand.mahalanobis2 + backwards * (LEFT_OUT - hand.mahalanobis2).max(0.0)
+}
+
+/// The probability that has these odds, given as their logarithm.
+pub(crate) fn probability(log_odds: f64) -> f64 {
+    (1.0 + (-log_odds).exp()).recip()
 }
 
 impl Detections {
@@ -37,8 +70,8 @@ impl Detections {
         // What is no hand is an answer here, not an error: other views may see one.
         let found = finder.find(mask, &Cleanup::default(), WristModel::builtin());
         let mut hands = found.unwrap_or_default();
-        // Other views can tell which end of an arm is which, so that any end counts alike here.
-        hands.sort_by(|a, b| a.mahalanobis2.total_cmp(&b.mahalanobis2));
+        // Other views can tell which end of an arm is which.
+        hands.sort_by(|a, b| unlikely(a).total_cmp(&unlikely(b)));
         hands.sort_by_key(|hand| !may_have_arm(hand));
         hands.truncate(MOST);
         Self { camera, hands, mask: mask.clone() }
@@ -47,6 +80,31 @@ impl Detections {
     /// Those of a camera that saw nothing.
     pub fn none(camera: &Camera) -> Self {
         Self { camera: camera.clone(), hands: Vec::new(), mask: Mask::default() }
+    }
+
+    /// How much likelier the hand is at the other end of the arm than where a hand in space has it, as the logarithm of the
+    /// odds; nothing where the arm is seen from an end or this picture shows nothing there.
+    pub(crate) fn backwards_log_odds(&self, wrist: DVec3, arm: DVec3) -> f64 {
+        let ahead = AHEAD * arm;
+        let (Some(at), Some(to)) = (self.camera.project(wrist), self.camera.project(wrist + ahead))
+        else {
+            return 0.0;
+        };
+        let depth = self.camera.extrinsics.to_camera(wrist).z.max(f64::MIN_POSITIVE);
+        let scale = self.camera.intrinsics.fx / depth;
+        let seen = to - at;
+        if seen.length() < FORESHORTENED * AHEAD * scale {
+            return 0.0;
+        }
+        let from = |hand: &HandDetection| DVec2::from_array(hand.wrist).distance(at);
+        let along =
+            |hand: &HandDetection| DVec2::from_array(hand.direction).dot(seen) / seen.length();
+        let on_arm = self.hands.iter().filter(|hand| along(hand).abs() > SIDEWAYS);
+        let nearest = on_arm.min_by(|a, b| from(a).total_cmp(&from(b)));
+        match nearest.filter(|hand| from(hand) < LIMB * scale) {
+            Some(hand) => -along(hand).signum() * hand.ahead_log_odds.clamp(-SUREST, SUREST),
+            None => 0.0,
+        }
     }
 
     /// Whether a point of the world is seen within the mask.

@@ -12,3 +12,4 @@ pub use arm::Arm;
 pub use associate::{Placement, associate};
 pub use crop::{BoundingSphere, HandCrop};
 pub use detect::Detections;
+pub(crate) use detect::{probability, unlikely};

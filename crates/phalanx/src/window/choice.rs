@@ -5,6 +5,7 @@ use phalanx_camera::{Camera, Ray, triangulate};
 use phalanx_segmentation::HandDetection;
 
 use crate::localize::sighting::{Sighting, arm};
+use crate::localize::unlikely;
 
 /// The most things that are considered in each view.
 const MOST: usize = 6;
@@ -23,8 +24,8 @@ const WIDTH_SPREAD: f64 = 0.25;
 /// its length.
 const TURN: f64 = 0.1;
 
-/// The hand in each view, among what may be one, the likeliest first: Mahalanobis distances, the rays' misses,
-/// how wide the wrist would be, where else the arm would point to, and the way from the last frame's
+/// The hand in each view, among what may be one, the likeliest first: how unlikely each is at its end of the arm, the
+/// rays' misses, how wide the wrist would be, where else the arm would point to, and the way from the last frame's
 /// wrist are each a squared distance in standard deviations, and their sum is the least. Every view
 /// has at least one.
 pub(super) fn choose(
@@ -51,7 +52,7 @@ pub(super) fn choose(
 
 /// What may be a hand, and what it says of where that is unless the lens has no place for it.
 struct Candidate<'a> {
-    mahalanobis2: f64,
+    unlikely: f64,
     sighting: Option<Sighting<'a>>,
 }
 
@@ -59,14 +60,14 @@ fn candidates((camera, hands): &(Camera, Vec<HandDetection>)) -> Vec<Candidate<'
     let likeliest = hands.iter().take(MOST);
     likeliest
         .map(|hand| Candidate {
-            mahalanobis2: hand.mahalanobis2,
+            unlikely: unlikely(hand),
             sighting: Sighting::new(camera, hand).ok(),
         })
         .collect()
 }
 
 fn cost(chosen: &[&Candidate<'_>], last: Option<DVec3>) -> f64 {
-    let mahalanobis2: f64 = chosen.iter().map(|candidate| candidate.mahalanobis2).sum();
+    let unlikely: f64 = chosen.iter().map(|candidate| candidate.unlikely).sum();
     let sightings: Vec<Sighting<'_>> =
         chosen.iter().filter_map(|candidate| candidate.sighting).collect();
     let rays: Vec<Ray> = sightings.iter().map(|sighting| sighting.wrist).collect();
@@ -78,7 +79,7 @@ fn cost(chosen: &[&Candidate<'_>], last: Option<DVec3>) -> f64 {
         Some(met) => met.point.distance_squared(last),
         None => rays.iter().map(|ray| distance_squared(ray, last)).fold(0.0, f64::max),
     });
-    mahalanobis2 + apart + moved / (MOTION * MOTION)
+    unlikely + apart + moved / (MOTION * MOTION)
 }
 
 /// How little what views see is one arm with its wrist at a point.
@@ -126,6 +127,8 @@ mod tests {
             arm: 2.0 * width,
             cut_off: false,
             mahalanobis2,
+            ahead_log_odds: f64::INFINITY,
+            profile: Default::default(),
             component: 0,
         }
     }

@@ -2,11 +2,12 @@
 
 use std::sync::LazyLock;
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use phalanx::{ItemRng, NoProgress, TakeFit, TakeFrame, TakeSettings, fit_take};
 use phalanx_camera::{Camera, Intrinsics, Rig};
 use phalanx_hand::{Digit, Dof, HandShape, JOINTS, Pose};
 use phalanx_render::Renderer;
+use phalanx_segmentation::Mask;
 
 /// A drawn take: cameras on three sides of a desk, and a hand that is no mean one.
 pub(crate) struct Drawn {
@@ -17,10 +18,15 @@ pub(crate) struct Drawn {
 
 /// The desk's cameras, with pictures that a hand is small in.
 pub(crate) fn cameras() -> Vec<Camera> {
+    zoomed(1.6)
+}
+
+/// The desk's cameras with pictures of 320 by 240, as many times as large as they are.
+fn zoomed(times: f64) -> Vec<Camera> {
     let rig = Rig::from_toml(include_str!("../../fixtures/desk.toml")).expect("a rig");
     let wide = |camera: &Camera| {
         let Intrinsics { fx, .. } = camera.intrinsics;
-        camera.with_intrinsics(Intrinsics::pinhole(320, 240, 1.6 * fx))
+        camera.with_intrinsics(Intrinsics::pinhole(320, 240, times * fx))
     };
     rig.cameras.iter().map(wide).collect()
 }
@@ -84,6 +90,28 @@ pub(crate) fn drawn_coming(hand: &HandShape, count: usize, away: usize) -> Drawn
     drawn_in(hand, (0..count).map(coming))
 }
 
+/// The same of an arm that ends within the pictures, cut across so far behind the wrist, mm.
+pub(crate) fn drawn_sleeved(count: usize, behind: f64) -> Drawn {
+    let mut drawn = drawn_before(zoomed(0.8), &hand(), (0..count).map(pose));
+    for (frame, joints) in drawn.frames.iter_mut().zip(&drawn.joints) {
+        for (mask, camera) in frame.masks.iter_mut().zip(&drawn.cameras) {
+            *mask = mask.take().map(|mask| sleeved(&mask, camera, joints[0], behind));
+        }
+    }
+    drawn
+}
+
+/// What a camera sees of a hand and of so much of its forearm behind the wrist, mm, which lies along +z.
+pub(crate) fn sleeved(mask: &Mask, camera: &Camera, wrist: DVec3, behind: f64) -> Mask {
+    let seen = |behind: f64| camera.project(wrist - DVec3::Z * behind).expect("before it");
+    let [wrist, end] = [0.0, behind].map(seen);
+    let (width, height) = mask.dimensions();
+    Mask::from_fn(width, height, |x, y| {
+        let pixel = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+        mask.is_hand(x, y) && (pixel - end).dot(wrist - end) > 0.0
+    })
+}
+
 /// Each frame by itself: fingers bent by any amounts, and the hand turned in any way that an arm allows.
 pub(crate) fn drawn_stills(count: usize) -> Drawn {
     let mut random = ItemRng::new(7, 0);
@@ -108,7 +136,16 @@ const RATE: f64 = 30.0;
 
 /// A hand in some poses.
 fn drawn_in(hand: &HandShape, poses: impl Iterator<Item = Pose>) -> Drawn {
-    let (cameras, rest) = (cameras(), DAffine3::IDENTITY);
+    drawn_before(cameras(), hand, poses)
+}
+
+/// The same before some cameras.
+fn drawn_before(
+    cameras: Vec<Camera>,
+    hand: &HandShape,
+    poses: impl Iterator<Item = Pose>,
+) -> Drawn {
+    let rest = DAffine3::IDENTITY;
     let mut renderers: Vec<Renderer> =
         cameras.iter().map(|camera| Renderer::new(camera).expect("a camera")).collect();
     let (mut frames, mut joints) = (Vec::new(), Vec::new());

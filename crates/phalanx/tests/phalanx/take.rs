@@ -1,6 +1,6 @@
 //! Whole takes of drawn hands, from masks and cameras alone.
 
-use glam::{DAffine3, DMat3, DVec2, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use phalanx::{
     Delay, Error, FitDoubt, Missing, NoProgress, Proportions, TakeFrame, TakeSettings,
     TrackSettings, TrackedFrame, Tracker, VolumeEstimate, draw_mask, estimate_volume, fit_frame,
@@ -11,8 +11,8 @@ use phalanx_hand::{Dof, HandShape, Pose, Side};
 use phalanx_segmentation::Mask;
 
 use crate::drawn::{
-    Drawn, FITTED, cameras, drawn, drawn_coming, drawn_of, drawn_stills, drawn_turning, hand,
-    mean_error,
+    Drawn, FITTED, cameras, drawn, drawn_coming, drawn_of, drawn_sleeved, drawn_stills,
+    drawn_turning, hand, mean_error, sleeved,
 };
 
 #[test]
@@ -92,18 +92,9 @@ fn one_camera_says_how_little_it_knows_of_the_distance() {
 #[test]
 fn the_end_of_a_sleeve_is_not_taken_for_a_hand_before_one_camera() {
     let Drawn { cameras, mut frames, joints } = drawn(6);
-    let camera = &cameras[2];
     for (frame, joints) in frames.iter_mut().zip(&joints) {
-        // The arm is seen as far as 120 mm behind the wrist.
-        let [wrist, end] = [0.0, 120.0].map(|behind| joints[0] - DVec3::Z * behind);
-        let [wrist, end] = [wrist, end].map(|point| camera.project(point).expect("before it"));
         let mask = frame.masks.remove(2).expect("drawn");
-        let is_seen = |x: u32, y: u32| {
-            let pixel = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
-            (pixel - end).dot(wrist - end) > 0.0
-        };
-        let seen = |x, y| mask.is_hand(x, y) && is_seen(x, y);
-        frame.masks = vec![Some(Mask::from_fn(320, 240, seen))];
+        frame.masks = vec![Some(sleeved(&mask, &cameras[2], joints[0], 120.0))];
     }
     let settings = TakeSettings::default();
     let fit = fit_take(&cameras[2..], &frames, &settings, &NoProgress).expect("a fit");
@@ -111,6 +102,19 @@ fn the_end_of_a_sleeve_is_not_taken_for_a_hand_before_one_camera() {
         let ahead = (fit.joints[9] - fit.joints[0]).normalize();
         let along = ahead.dot((truth[9] - truth[0]).normalize());
         assert!(along > 0.5, "{along:.2}");
+    }
+}
+
+/// A forearm that ends at a rolled-up sleeve looks much like a hand with its fingers together.
+#[test]
+fn the_hand_is_not_looked_for_at_the_sleeve_of_a_long_arm() {
+    let Drawn { cameras, frames, joints } = drawn_sleeved(6, 230.0);
+    let fit = fit_take(&cameras, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
+    for (k, (own, truth)) in fit.frames.iter().zip(&joints).enumerate() {
+        let alone = fit_frame(&cameras, &frames[k], &fit).expect("a fit");
+        let errors = [own, &alone].map(|fit| mean_error(&fit.joints, truth));
+        assert!(errors.iter().all(|error| *error < 12.0), "frame {k}: {errors:.1?}");
+        assert!(own.doubts.is_empty() && alone.doubts.is_empty(), "frame {k}: {:?}", own.doubts);
     }
 }
 

@@ -359,6 +359,8 @@ fn located(camera: &Camera, wrist: DVec3, arm: DVec3) -> HandDetection {
         arm: 30.0,
         cut_off: false,
         mahalanobis2: 5.0,
+        ahead_log_odds: 0.0,
+        profile: Default::default(),
         component: 0,
     }
 }

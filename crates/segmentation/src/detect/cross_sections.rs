@@ -15,6 +15,13 @@ const BEHIND: [f64; 3] = [0.25, 0.5, 1.0];
 /// How many numbers describe a section.
 pub(crate) const FEATURES: usize = AHEAD.len() + BEHIND.len() + 2;
 
+/// Where widths are looked at to either side of a section to tell which side the hand is on, in units of its own
+/// width: up to the elbow, and to the tip of the longest finger.
+const ALONG: [f64; 10] = [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0];
+
+/// How many numbers describe the whole limb about a section.
+pub(crate) const PROFILE: usize = 2 * ALONG.len() + 4;
+
 /// CrossSections narrower than this have no shape, cells.
 const NARROWEST: f64 = 4.0;
 
@@ -108,6 +115,32 @@ impl CrossSections {
         whole[0] = ((self.count() - section) as f64 / own).ln();
         whole[1] = (self.ahead[section] / (own * own)).ln();
         Some(features)
+    }
+
+    /// What the whole limb looks like about a section, whatever its size: logarithms of the widths ahead, of those
+    /// behind, of the lengths ahead and behind and of the areas ahead and behind, in units of the section's width. There
+    /// is nothing beyond either end. `None` of a section too narrow to tell.
+    pub(crate) fn profile(&self, section: usize) -> Option<[f64; PROFILE]> {
+        let own = self.widths[section];
+        if own < NARROWEST {
+            return None;
+        }
+        let width = |offset: f64| {
+            let at = section as f64 + offset * own;
+            (if at < 0.0 { 0.0 } else { self.width_at(at) }) / own
+        };
+        let mut profile = [0.0; PROFILE];
+        let (widths, whole) = profile.split_at_mut(2 * ALONG.len());
+        let (ahead, behind) = widths.split_at_mut(ALONG.len());
+        for ((ahead, behind), offset) in ahead.iter_mut().zip(behind).zip(ALONG) {
+            (*ahead, *behind) = (width(offset), width(-offset));
+        }
+        let area = |cells: f64| cells / (own * own);
+        whole[0] = (self.count() - section) as f64 / own;
+        whole[1] = section as f64 / own;
+        whole[2] = area(self.ahead[section]);
+        whole[3] = area(self.ahead[0] - self.ahead[section]);
+        Some(profile.map(|number| (number + NOTHING).ln()))
     }
 
     /// The width between two sections; nothing beyond the tip.

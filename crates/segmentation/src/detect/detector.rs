@@ -2,7 +2,8 @@
 
 use crate::mask::Mask;
 
-use crate::detect::cross_sections::CrossSections;
+use crate::detect::cross_sections::{CrossSections, PROFILE};
+use crate::detect::end_model::EndModel;
 use crate::detect::geodesic::Geodesic;
 use crate::detect::grid::Grid;
 use crate::detect::wrist_model::WristModel;
@@ -36,6 +37,11 @@ pub struct HandDetection {
     /// How little it looks like a hand: the squared Mahalanobis distance of its sections from those
     /// of hands, about 11 for one.
     pub mahalanobis2: f64,
+    /// How much likelier the hand is at this end of the arm than at the other, as the logarithm of the odds.
+    pub ahead_log_odds: f64,
+    /// What an [`EndModel`] tells that from: logarithms of the limb's widths ahead of the wrist and behind it, of the lengths
+    /// ahead and behind and of the areas, in units of the wrist's width.
+    pub profile: [f64; PROFILE],
     /// Which component of the mask it is, for [`HandDetector::isolate`].
     pub component: usize,
 }
@@ -51,11 +57,35 @@ const ENDS: usize = 6;
 /// one of them unless it is cut off near the wrist.
 const LIKELY_ENDS: usize = 2;
 
+/// Cosine of the angle up to which two arms point the same way.
+const SAME_WAY: f64 = 0.5;
+
+/// The odds, as a logarithm, of an end of an arm at which nothing may be a hand: one in twenty hands is not seen.
+const NOT_SEEN: f64 = -3.0;
+
 /// A section that may be a wrist.
 struct Candidate {
     section: usize,
     evidence: f64,
     mahalanobis2: f64,
+    profile: [f64; PROFILE],
+}
+
+/// Compares what points one way along an arm with what points the other way, among all that may be the hand in one
+/// component: from each one's own odds to those of its end.
+fn compare_ends(hands: &mut [(bool, HandDetection)]) {
+    let own: Vec<HandDetection> = hands.iter().map(|(_, hand)| *hand).collect();
+    for (_, hand) in hands {
+        let best = |sense: f64| {
+            let along = |other: &HandDetection| {
+                let ([a, b], [x, y]) = (hand.direction, other.direction);
+                sense * (a * x + b * y)
+            };
+            let same = own.iter().filter(|other| along(other) > SAME_WAY);
+            same.map(|other| other.ahead_log_odds).fold(NOT_SEEN, f64::max)
+        };
+        hand.ahead_log_odds = best(1.0) - best(-1.0);
+    }
 }
 
 /// Finds hands in masks, one after another in the same memory.
@@ -73,8 +103,8 @@ impl HandDetector {
     /// Everything in a mask of any size that may be a hand, the likeliest first: each component of
     /// at least [`Cleanup::min_hand`], with its arm coming from each place where it crosses the image
     /// border or, where it crosses none, from each of its ends, and with its wrist at each of the
-    /// few likeliest places along the arm. Arms from an end that is not one of the two farthest apart
-    /// come last. Speckle is removed first.
+    /// few likeliest places along the arm. Hands that are likelier at the arm's other end come after all others, and
+    /// arms from an end that is not one of the two farthest apart last. Speckle is removed first.
     ///
     /// # Errors
     /// Unusable `cleanup`, an image without pixels, or nothing as large as a hand.
@@ -100,19 +130,20 @@ impl HandDetector {
         cleanup: &Cleanup,
         model: &WristModel,
     ) -> Result<Vec<HandDetection>> {
-        let (mut hands, mut unlikely) = (Vec::new(), Vec::new());
+        let mut found: Vec<(bool, HandDetection)> = Vec::new();
         for component in self.components_of(mask, cleanup)? {
             self.load(component);
+            let first = found.len();
             for (number, source) in self.arm_ends().into_iter().enumerate() {
                 let is_likely = number < LIKELY_ENDS || !self.grid.crossings().is_empty();
-                let found = self.hands_from(&source, component, model);
-                (if is_likely { &mut hands } else { &mut unlikely }).extend(found);
+                let hands = self.hands_from(&source, component, model);
+                found.extend(hands.into_iter().map(|hand| (is_likely, hand)));
             }
+            compare_ends(&mut found[first..]);
         }
-        for hands in [&mut hands, &mut unlikely] {
-            hands.sort_by(|a, b| a.mahalanobis2.total_cmp(&b.mahalanobis2));
-        }
-        hands.append(&mut unlikely);
+        found.sort_by(|(_, a), (_, b)| a.mahalanobis2.total_cmp(&b.mahalanobis2));
+        found.sort_by_key(|(is_likely, hand)| (!is_likely, hand.ahead_log_odds < 0.0));
+        let hands: Vec<HandDetection> = found.into_iter().map(|(_, hand)| hand).collect();
         if hands.is_empty() { Err(Error::NoHand) } else { Ok(hands) }
     }
 
@@ -215,7 +246,8 @@ impl HandDetector {
                 let features = sections.features(section)?;
                 let (evidence, mahalanobis2) =
                     (model.evidence(&features), model.mahalanobis2(&features));
-                Some(Candidate { section, evidence, mahalanobis2 })
+                let profile = sections.profile(section)?;
+                Some(Candidate { section, evidence, mahalanobis2, profile })
             })
             .collect();
         candidates.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
@@ -248,6 +280,8 @@ impl HandDetector {
             arm: self.visible_arm(section) * scale,
             cut_off: false,
             mahalanobis2: candidate.mahalanobis2,
+            ahead_log_odds: self.ahead_log_odds(&candidate.profile),
+            profile: candidate.profile,
             component,
         };
         let ahead = |&cell: &usize| {
@@ -269,6 +303,16 @@ impl HandDetector {
             hand.cut_off |= self.grid.at_border[cell] && along > 0.5 * hand.width;
         }
         (hand.length > 0.0).then_some(hand)
+    }
+
+    /// How much likelier the hand is ahead of a section with this profile than behind it. What leaves the picture is no
+    /// shorter than an arm, whatever can be seen of it.
+    fn ahead_log_odds(&self, profile: &[f64; PROFILE]) -> f64 {
+        let odds = EndModel::builtin().log_odds(profile);
+        if self.sections.at_border.first().is_some_and(|at_border| *at_border) {
+            return odds.max(0.0);
+        }
+        odds
     }
 
     /// The direction of the arm at a section: that in which the middles of the sections move, over

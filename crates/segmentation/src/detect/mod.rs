@@ -2,6 +2,7 @@
 
 pub(crate) mod cross_sections;
 pub(crate) mod detector;
+pub(crate) mod end_model;
 pub(crate) mod gaussian;
 pub(crate) mod geodesic;
 pub(crate) mod grid;

@@ -98,7 +98,7 @@ pub(super) fn follow(
     let motion = predicted.corrected(&refined.pose, &covariance, &inflated, hand);
     let (offset, before) = (offset(&refined.pose, predicted), predicted.variances());
     let after = std::array::from_fn(|k| covariance[k * NUMBERS + k]);
-    let found = Found { rest, refined, crops, points, left_out, misfit };
+    let found = Found { rest, refined, crops, points, left_out, backwards: 0.0, misfit };
     Ok(Some(Followed { found, silhouettes, motion, offset, before, after }))
 }
 
