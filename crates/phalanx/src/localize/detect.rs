@@ -124,11 +124,48 @@ mod tests {
 
     use super::*;
 
+    /// A camera 500 mm above the origin.
+    fn above() -> Camera {
+        let inside = Intrinsics::pinhole(160, 160, 150.0);
+        Camera::look_at("above", inside, 500.0 * DVec3::Z, DVec3::ZERO, DVec3::Y).expect("a camera")
+    }
+
+    #[test]
+    fn a_hand_is_likelier_ahead_of_its_wrist_than_at_its_sleeve() {
+        // An open hand to the right, on an arm that ends within the picture.
+        let mask = Mask::from_fn(160, 160, |x, y| {
+            let (dx, dy) = (f64::from(x) - 90.0, (f64::from(y) - 80.0).abs());
+            let arm = (-60.0..=0.0).contains(&dx) && dy < 8.5 - 0.05 * dx;
+            let palm = (0.0..28.0).contains(&dx) && dy < (8.5 + 0.5 * dx).min(13.0);
+            let fingers = (28.0..54.0).contains(&dx) && dy < 13.0 && (dy + 3.5) % 7.0 > 1.5;
+            arm || palm || fingers
+        });
+        let camera = above();
+        let on_table = |x: f64, y: f64| {
+            let ray = camera.unproject(DVec2::new(x, y)).expect("a lens without distortion");
+            ray.origin - ray.direction * (ray.origin.z / ray.direction.z)
+        };
+        let seen = Detections::find(&camera, &mask, &mut HandDetector::default());
+        let wrist = on_table(90.0, 80.0);
+        let along = (on_table(120.0, 80.0) - wrist).normalize();
+        let right = seen.backwards_log_odds(wrist, along);
+        assert!(right < -3.0, "{right}");
+        assert_eq!(seen.backwards_log_odds(wrist, -along), -right);
+        assert_eq!(seen.backwards_log_odds(on_table(75.0, 80.0), -along), -right);
+        // Seen from its end an arm says nothing, and neither does an empty table.
+        assert_eq!(seen.backwards_log_odds(wrist, DVec3::Z), 0.0);
+        assert_eq!(Detections::none(&camera).backwards_log_odds(wrist, along), 0.0);
+        let unlikely = |hand: &HandDetection| unlikely(hand) - hand.mahalanobis2;
+        let is_right = |hand: &&HandDetection| hand.direction[0] > 0.7;
+        let [own, other] =
+            [true, false].map(|right| seen.hands.iter().find(|h| is_right(h) == right));
+        let [own, other] = [own.expect("the hand"), other.expect("the sleeve")].map(unlikely);
+        assert!(own < 3.0 && other > 10.0, "{own} {other}");
+    }
+
     #[test]
     fn a_rod_before_a_hand_comes_last() {
-        let inside = Intrinsics::pinhole(160, 160, 150.0);
-        let camera = Camera::look_at("above", inside, 500.0 * DVec3::Z, DVec3::ZERO, DVec3::Y)
-            .expect("a camera");
+        let camera = above();
         // A palm on an arm from below, and a thin rod that the palm touches.
         let mask = Mask::from_fn(160, 160, |x, y| {
             let (dx, dy) = (f64::from(x) - 79.5, f64::from(y) - 90.0);

@@ -90,9 +90,20 @@ pub(crate) fn drawn_coming(hand: &HandShape, count: usize, away: usize) -> Drawn
     drawn_in(hand, (0..count).map(coming))
 }
 
-/// The same of an arm that ends within the pictures, cut across so far behind the wrist, mm.
+/// Fingers that are nearly straight, on a slender arm that ends within the pictures: it is cut across so far behind the
+/// wrist, mm.
 pub(crate) fn drawn_sleeved(count: usize, behind: f64) -> Drawn {
-    let mut drawn = drawn_before(zoomed(0.8), &hand(), (0..count).map(pose));
+    let mut hand = hand();
+    (hand.forearm.half_widths_mm, hand.forearm.flatness) = ([24.0, 40.0], 0.7);
+    let straight = |frame: usize| {
+        let mut pose = pose(frame);
+        for finger in Digit::FINGERS {
+            let angles = [0.0, 0.195, 0.24, 0.135];
+            finger.dofs().into_iter().zip(angles).for_each(|(dof, angle)| pose[dof] = angle);
+        }
+        pose
+    };
+    let mut drawn = drawn_before(zoomed(0.8), &hand, (0..count).map(straight));
     for (frame, joints) in drawn.frames.iter_mut().zip(&drawn.joints) {
         for (mask, camera) in frame.masks.iter_mut().zip(&drawn.cameras) {
             *mask = mask.take().map(|mask| sleeved(&mask, camera, joints[0], behind));
