@@ -39,7 +39,7 @@ const SAME: f64 = 0.7;
 const NEAR: f64 = 0.25;
 const OPPOSED: f64 = -0.5;
 
-/// Precision of the weights' prior, and steps of Newton's method, of which a third would do.
+/// Precision of the weights' prior, and steps of Newton's method.
 const RIDGE: f64 = 3.0;
 const STEPS: usize = 25;
 
@@ -121,18 +121,17 @@ fn test(model: &EndModel, silhouettes: &[Vec<Candidate>]) -> String {
         let best = own.iter().max_by(|a, b| odds(a).total_cmp(&odds(b)));
         best.is_some_and(|best| best.is_hand)
     };
-    let both = || {
-        let shows = |own: &&Vec<Candidate>| {
-            [true, false].map(|end| own.iter().any(|c| c.is_hand == end)) == [true; 2]
-        };
-        silhouettes.iter().filter(shows)
+    let shows = |own: &&Vec<Candidate>| {
+        [true, false].iter().all(|end| own.iter().any(|candidate| candidate.is_hand == *end))
     };
+    let both: Vec<&Vec<Candidate>> = silhouettes.iter().filter(shows).collect();
+    let right = both.iter().copied().filter(likeliest).count() as f64 / both.len() as f64;
     format!(
-        "right of others: at the hand's end {:.3}, at the arm's {:.3}; the likeliest of all in a silhouette {:.3} of {}\n",
+        "others: {:.3} of those at the hand's end are right, {:.3} of those at the arm's\n\
+         {} silhouettes have both; the likeliest is the hand in {right:.3}\n",
         share(true),
         share(false),
-        both().filter(likeliest).count() as f64 / both().count() as f64,
-        both().count(),
+        both.len(),
     )
 }
 
