@@ -61,7 +61,7 @@ fn what_no_hand_explains_is_not_said_to_be_mistaken() {
     let mask = |frame: u32, camera: &Camera| {
         let Intrinsics { width, height, .. } = camera.intrinsics;
         let is_wall = |x: u32, y: u32| 3 * x > width && 7 * y > height + 9 * frame;
-        Mask::from_fn(width, height, |x, y| is_wall(x, y) && (x + 2 * y) % 90 < 70)
+        Mask::from_fn(width, height, |x, y| is_wall(x, y) && (x + 2 * y) % 60 < 45)
     };
     let frame = |frame: u32| {
         TakeFrame::of_masks(cameras.iter().map(|camera| Some(mask(frame, camera))).collect())
