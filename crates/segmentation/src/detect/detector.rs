@@ -60,7 +60,7 @@ const LIKELY_ENDS: usize = 2;
 /// Cosine of the angle up to which two arms point the same way.
 const SAME_WAY: f64 = 0.5;
 
-/// The odds, as a logarithm, of an end of an arm at which nothing may be a hand: one in twenty hands is not seen.
+/// The odds, as a logarithm, of an end of an arm at which nothing may be a hand: one in twenty hands is not seen. A choice.
 const NOT_SEEN: f64 = -3.0;
 
 /// A section that may be a wrist.
@@ -68,7 +68,6 @@ struct Candidate {
     section: usize,
     evidence: f64,
     mahalanobis2: f64,
-    profile: [f64; PROFILE],
 }
 
 /// Compares what points one way along an arm with what points the other way, among all that may be the hand in one
@@ -246,8 +245,7 @@ impl HandDetector {
                 let features = sections.features(section)?;
                 let (evidence, mahalanobis2) =
                     (model.evidence(&features), model.mahalanobis2(&features));
-                let profile = sections.profile(section)?;
-                Some(Candidate { section, evidence, mahalanobis2, profile })
+                Some(Candidate { section, evidence, mahalanobis2 })
             })
             .collect();
         candidates.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
@@ -268,6 +266,7 @@ impl HandDetector {
     fn hand_at(&self, candidate: &Candidate, component: usize) -> Option<HandDetection> {
         let section = candidate.section;
         let direction = self.direction(section)?;
+        let profile = self.sections.profile(section)?;
         let (wrist, scale) = (self.sections.centres[section], self.grid.scale as f64);
         let mut hand = HandDetection {
             wrist,
@@ -280,8 +279,8 @@ impl HandDetector {
             arm: self.visible_arm(section) * scale,
             cut_off: false,
             mahalanobis2: candidate.mahalanobis2,
-            ahead_log_odds: self.ahead_log_odds(&candidate.profile),
-            profile: candidate.profile,
+            ahead_log_odds: self.ahead_log_odds(&profile),
+            profile,
             component,
         };
         let ahead = |&cell: &usize| {
