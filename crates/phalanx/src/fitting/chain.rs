@@ -1,8 +1,8 @@
 //! Which poses of a take's frames are likeliest together.
 
-use phalanx_refine::PosePrior;
-
 use super::found::Found;
+use super::frame_fit::FrameFitter;
+use super::line_of_sight::LineOfSight;
 use super::motion::Motion;
 use super::times::Times;
 
@@ -11,17 +11,28 @@ use super::times::Times;
 pub(super) fn likeliest(
     hypotheses: Vec<Vec<Found>>,
     times: &Times,
-    prior: &PosePrior,
+    fitter: &FrameFitter<'_>,
 ) -> Vec<Option<Found>> {
     let best: Vec<Option<Found>> = hypotheses.iter().map(|frame| frame.first().cloned()).collect();
-    let Some(motion) = Motion::of_found(&best, times, prior) else { return best };
-    let chosen = chosen(&hypotheses, times, &motion);
+    let Some(motion) = Motion::of_found(&best, times, fitter.prior) else { return best };
+    let along = LineOfSight::of(&best, times, fitter.hand);
+    let against = |one: &Found, other: &Found, away: f64| {
+        let along = along.as_ref().map_or(0.0, |along| {
+            along.against(&one.frame(fitter.hand), &other.frame(fitter.hand), away)
+        });
+        motion.against(&one.refined.pose, &other.refined.pose, away) + along
+    };
+    let chosen = chosen(&hypotheses, times, against);
     let frames = hypotheses.into_iter().zip(chosen);
     frames.map(|(mut frame, chosen)| Some(frame.swap_remove(chosen?))).collect()
 }
 
-/// Which of its poses is chosen for each frame.
-fn chosen(hypotheses: &[Vec<Found>], times: &Times, motion: &Motion) -> Vec<Option<usize>> {
+/// Which of its poses is chosen for each frame, by what speaks against one pose so many steps after another.
+fn chosen(
+    hypotheses: &[Vec<Found>],
+    times: &Times,
+    against: impl Fn(&Found, &Found, f64) -> f64,
+) -> Vec<Option<usize>> {
     let seen: Vec<usize> = (0..hypotheses.len()).filter(|&k| !hypotheses[k].is_empty()).collect();
     // What speaks against the best way to each pose, and the pose before on that way.
     let mut ways: Vec<Vec<(f64, usize)>> = Vec::with_capacity(seen.len());
@@ -31,7 +42,7 @@ fn chosen(hypotheses: &[Vec<Found>], times: &Times, motion: &Motion) -> Vec<Opti
             let (way, from) = before.map_or((0.0, 0), |(ways, before)| {
                 let from = |(earlier, found): (usize, &Found)| {
                     let away = times.between(before, k);
-                    let change = motion.against(&found.refined.pose, &own.refined.pose, away);
+                    let change = against(found, own, away);
                     (ways[earlier].0 + change, earlier)
                 };
                 let all = hypotheses[before].iter().enumerate().map(from);
@@ -56,11 +67,12 @@ fn chosen(hypotheses: &[Vec<Found>], times: &Times, motion: &Motion) -> Vec<Opti
 
 #[cfg(test)]
 mod tests {
-    use phalanx_hand::{Dof, Pose};
-    use phalanx_refine::PoseFit;
+    use phalanx_hand::{Dof, HandShape, Pose};
+    use phalanx_refine::{PoseFit, PoseFitSettings};
     use proptest::prelude::*;
 
     use super::*;
+    use crate::fitting::weights::ViewWeights;
     use crate::synthesis::postures::coupled;
 
     /// A pose with one joint bent, which what was seen speaks against so much.
@@ -122,7 +134,10 @@ mod tests {
             let motion = Motion::of_found(&known, &Times::even(known.len()), coupled());
             let motion = motion.expect("one frame follows another");
             let times = Times::even(hypotheses.len());
-            let chosen = chosen(&hypotheses, &times, &motion);
+            let change = |one: &Found, other: &Found, away: f64| {
+                motion.against(&one.refined.pose, &other.refined.pose, away)
+            };
+            let chosen = chosen(&hypotheses, &times, change);
             let own = against(&hypotheses, &times, &motion, &chosen);
             for other in choices(&hypotheses) {
                 let is_answered = chosen.iter().map(Option::is_some);
@@ -134,12 +149,15 @@ mod tests {
 
     #[test]
     fn a_pose_that_nothing_before_or_after_leads_to_is_not_taken() {
+        let (refinement, weights) = (PoseFitSettings::default(), ViewWeights::unknown(0));
+        let hand = &HandShape::adult();
+        let fitter = FrameFitter { hand, prior: coupled(), refinement: &refinement, weights };
         let usual = |k: u32| found((0.02 * f64::from(k), 5.0));
         let mut hypotheses: Vec<Vec<Found>> = (0..20).map(|k| vec![usual(k)]).collect();
         // It explains the picture a little better.
         hypotheses[3].insert(0, found((1.5, 4.5)));
         let times = Times::even(hypotheses.len());
-        let bent: Vec<f64> = likeliest(hypotheses, &times, coupled())
+        let bent: Vec<f64> = likeliest(hypotheses, &times, &fitter)
             .into_iter()
             .map(|found| found.expect("every frame has a pose").refined.pose[Dof::IndexPip])
             .collect();

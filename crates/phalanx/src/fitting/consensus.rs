@@ -36,24 +36,24 @@ pub struct VolumeEstimate {
 
 /// How frames are fitted while it is not known which views agree: hand and cameras are taken as they
 /// are, and starts are many.
-pub(super) fn refinement() -> PoseFitSettings {
-    PoseFitSettings { drawn: DrawnTerm::Outline, ..near(1) }
+pub(super) fn searching(cameras: usize) -> PoseFitSettings {
+    // Outlines that lie outside what is seen all around cost next to nothing: the mask may be too small. Where only one
+    // camera looks, nothing else says that the hand is further away.
+    let drawn = if cameras > 1 { DrawnTerm::Outline } else { DrawnTerm::Area };
+    PoseFitSettings { drawn, ..near() }
 }
 
-/// How frames of so many cameras are fitted again, near where their hands are, while views may still disagree.
-pub(super) fn near(cameras: usize) -> PoseFitSettings {
-    PoseFitSettings { disagreement: Some(DISAGREEMENT), ..believing(cameras) }
+/// How frames are fitted again, near where their hands are, while views may still disagree.
+pub(super) fn near() -> PoseFitSettings {
+    PoseFitSettings { disagreement: Some(DISAGREEMENT), ..believing() }
 }
 
-/// How frames of so many cameras are fitted when all views that are left agree: by areas between silhouettes. A hand
-/// before one camera can be anywhere along its line of sight: there is always one of about the right area, and nothing
-/// doubts it, so that one camera's outlines are compared.
-pub(super) fn believing(cameras: usize) -> PoseFitSettings {
-    let drawn = if cameras > 1 { DrawnTerm::Area } else { DrawnTerm::Outline };
+/// How frames are fitted when all views that are left agree: by areas between silhouettes.
+pub(super) fn believing() -> PoseFitSettings {
     let mut settings = PoseFitSettings {
         max_restarts: 0,
         settling_steps: 0,
-        drawn,
+        drawn: DrawnTerm::Area,
         ..PoseFitSettings::of_noise(NOISE)
     };
     // Starts were screened, which is the coarsest level.

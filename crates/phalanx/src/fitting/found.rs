@@ -1,6 +1,7 @@
 //! A pose that was found, and what it was found with.
 
 use glam::DAffine3;
+use phalanx_camera::Camera;
 use phalanx_hand::{HandShape, Pose};
 use phalanx_refine::PoseFit;
 
@@ -52,6 +53,14 @@ impl Found {
     /// The hand's frame: its origin at the wrist, z along the forearm.
     pub(super) fn frame(&self, hand: &HandShape) -> DAffine3 {
         starts::frame_at(&self.refined.pose, &self.rest, hand)
+    }
+
+    /// The camera, where there is only one and it shows anything.
+    pub(super) fn only_camera(&self) -> Option<&Camera> {
+        match &self.crops[..] {
+            [only] => only.as_ref().map(|crop| &crop.camera),
+            _ => None,
+        }
     }
 
     /// Whether a camera's points are left out.

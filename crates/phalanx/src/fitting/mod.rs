@@ -12,6 +12,7 @@ mod found;
 mod frame_fit;
 mod knowledge;
 mod known;
+mod line_of_sight;
 mod misfit;
 mod mistake;
 mod motion;

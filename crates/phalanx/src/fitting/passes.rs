@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::chain::likeliest;
 use super::found::Found;
 use super::frame_fit::{FrameFitter, Postures};
+use super::line_of_sight::LineOfSight;
 use super::motion::Motion;
 use super::observation::Sight;
 use super::repertoire;
@@ -68,7 +69,7 @@ pub(super) fn again(
     };
     let hypotheses: Vec<Vec<Found>> =
         (0..found.len()).into_par_iter().map(once).collect::<Result<_>>()?;
-    Ok(likeliest(hypotheses, times, fitter.prior))
+    Ok(likeliest(hypotheses, times, fitter))
 }
 
 /// All frames from the first to the last and back, each between its neighbours as they are then, from which
@@ -80,6 +81,7 @@ pub(super) fn swept(
     progress: &dyn Progress,
 ) -> Result<Vec<Option<Found>>> {
     let Some(motion) = Motion::of_found(&found, times, fitter.prior) else { return Ok(found) };
+    let along = LineOfSight::of(&found, times, fitter.hand);
     progress.begin("fit each frame between its neighbours", 2 * found.len());
     let count = found.len();
     for k in (0..count).chain((0..count).rev()) {
@@ -87,7 +89,11 @@ pub(super) fn swept(
         let Some(own) = &found[k] else { continue };
         let near = neighbours(&found, k, |_| true);
         let beside = near.iter().map(|(other, found)| (times.between(k, *other), *found));
-        let prior = motion.beside(fitter.prior, &beside.collect::<Vec<_>>())?;
+        let beside: Vec<_> = beside.collect();
+        let mut prior = motion.beside(fitter.prior, &beside)?;
+        if let Some(along) = &along {
+            prior = along.beside(&prior, &own.frame(fitter.hand), &beside, fitter.hand)?;
+        }
         let near: Vec<&Found> = near.into_iter().map(|(_, found)| found).collect();
         let fitter = fitter.with_prior(&prior);
         found[k] = fitter.again(own, &own.left_out, &near, Postures::Given)?;

@@ -34,7 +34,7 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
     let prior = starts::pose_prior()?;
     let fitter =
         |refinement, weights| FrameFitter { hand: &hand.shape, prior: &prior, refinement, weights };
-    let (coarse, fine) = (consensus::refinement(), consensus::near(cameras.len()));
+    let (coarse, fine) = (consensus::searching(cameras.len()), consensus::near());
     let searching = &fitter(&coarse, weights.relative());
     let fitting = &fitter(&fine, weights.relative());
     let sight = &Sight::of(cameras, frame)?;

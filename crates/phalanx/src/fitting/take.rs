@@ -99,8 +99,8 @@ pub fn fit_take(
     settings: &TakeSettings,
     progress: &dyn Progress,
 ) -> Result<TakeFit> {
-    let (prior, refinement) = (starts::pose_prior()?, consensus::refinement());
-    let believing = consensus::believing(cameras.len());
+    let (prior, refinement) = (starts::pose_prior()?, consensus::searching(cameras.len()));
+    let believing = consensus::believing();
     let times = &Times::of(frames)?;
     let take = Take::of((cameras, times), &settings.hand, &prior, &refinement);
     let keys = consensus::key_frames(cameras, frames, &take.fitter(Weights::Relative), progress)?;

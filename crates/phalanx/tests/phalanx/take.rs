@@ -89,6 +89,26 @@ fn one_camera_says_how_little_it_knows_of_the_distance() {
     assert!(shares.iter().sum::<f64>() / 6.0 < 0.15, "{shares:.2?}");
 }
 
+/// Outlines lay all around outside what was seen, as of hands that are nearer than they are.
+#[test]
+fn a_hand_before_one_camera_is_drawn_where_it_is_seen() {
+    let Drawn { cameras, frames, joints } = drawn(12);
+    for (view, camera) in cameras.iter().enumerate() {
+        let of_view = |frame: &TakeFrame| TakeFrame::of_masks(vec![frame.masks[view].clone()]);
+        let frames: Vec<TakeFrame> = frames.iter().map(of_view).collect();
+        let camera = std::slice::from_ref(camera);
+        let fit = fit_take(camera, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
+        let mut share = 0.0;
+        for (k, (fit, truth)) in fit.frames.iter().zip(&joints).enumerate() {
+            let overlap = fit.views[0].overlap.expect("it shows the hand");
+            assert!(overlap > 0.9, "view {view}, frame {k}: {overlap:.2}");
+            share += mean_error(&fit.joints, truth) / truth[9].distance(camera[0].centre()) / 12.0;
+        }
+        // Hands differ in size by some 13 %.
+        assert!(share < 0.13, "view {view}: {share:.3} of its distance");
+    }
+}
+
 #[test]
 fn the_end_of_a_sleeve_is_not_taken_for_a_hand_before_one_camera() {
     let Drawn { cameras, mut frames, joints } = drawn(6);

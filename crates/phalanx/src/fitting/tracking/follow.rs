@@ -26,9 +26,9 @@ pub(super) struct Followed {
     pub(super) after: [f64; NUMBERS],
 }
 
-/// How frames of so many cameras are fitted from starts that were screened already.
-pub(super) fn settings(cameras: usize) -> PoseFitSettings {
-    let usual = consensus::near(cameras);
+/// How frames are fitted from starts that were screened already.
+pub(super) fn settings() -> PoseFitSettings {
+    let usual = consensus::near();
     let level = |level: &Level| Level { steps: STEPS, ..*level };
     let levels = usual.levels.last().map(level).into_iter().collect();
     PoseFitSettings { levels, ..usual }

@@ -100,8 +100,8 @@ impl Tracker {
         Ok(Self {
             cameras: cameras.to_vec(),
             postures: starts::pose_prior()?,
-            following: follow::settings(cameras.len()),
-            searching: consensus::refinement(),
+            following: follow::settings(),
+            searching: consensus::searching(cameras.len()),
             delay,
             known,
             own_hand,
@@ -306,7 +306,7 @@ impl Tracker {
         }
         let rest = *rest;
         let Some(own_hand) = self.own_hand.take() else { return Ok(()) };
-        let believing = consensus::believing(self.cameras.len());
+        let believing = consensus::believing();
         let absolute =
             FrameFitter { weights: self.known.weights.clone(), ..self.fitter(&believing) };
         let ViewKnowledge { weights, persistent } = ViewKnowledge::of(&absolute, own_hand.kept())?;
