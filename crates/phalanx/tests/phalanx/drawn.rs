@@ -90,6 +90,18 @@ pub(crate) fn drawn_coming(hand: &HandShape, count: usize, away: usize) -> Drawn
     drawn_in(hand, (0..count).map(coming))
 }
 
+/// The same of a hand that does nothing but come nearer to a camera, by so much in all, mm.
+pub(crate) fn drawn_nearing(camera: &Camera, count: usize, by: f64) -> Drawn {
+    let towards = camera.centre().normalize();
+    let nearer = |frame: usize| {
+        let mut pose = pose(frame);
+        let at = towards * (by * (frame as f64 / (count - 1) as f64 - 0.5));
+        [pose[Dof::TX], pose[Dof::TY], pose[Dof::TZ]] = at.to_array();
+        pose
+    };
+    drawn_in(&hand(), (0..count).map(nearer))
+}
+
 /// Fingers that are nearly straight, on a slender arm that ends within the pictures: it is cut across so far behind the
 /// wrist, mm.
 pub(crate) fn drawn_sleeved(count: usize, behind: f64) -> Drawn {

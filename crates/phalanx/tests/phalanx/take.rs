@@ -11,8 +11,8 @@ use phalanx_hand::{Dof, HandShape, Pose, Side};
 use phalanx_segmentation::Mask;
 
 use crate::drawn::{
-    Drawn, FITTED, cameras, drawn, drawn_coming, drawn_of, drawn_sleeved, drawn_stills,
-    drawn_turning, hand, mean_error, sleeved,
+    Drawn, FITTED, cameras, drawn, drawn_coming, drawn_nearing, drawn_of, drawn_sleeved,
+    drawn_stills, drawn_turning, hand, mean_error, sleeved,
 };
 
 #[test]
@@ -106,6 +106,22 @@ fn a_hand_before_one_camera_is_drawn_where_it_is_seen() {
         }
         // Hands differ in size by some 13 %.
         assert!(share < 0.13, "view {view}: {share:.3} of its distance");
+    }
+}
+
+/// It moves along the line of sight alone, of which nothing is seen but that it grows.
+#[test]
+fn a_hand_that_comes_nearer_to_one_camera_is_followed() {
+    for (view, camera) in cameras().iter().enumerate() {
+        let Drawn { frames, joints, .. } = drawn_nearing(camera, 12, 200.0);
+        let of_view = |frame: &TakeFrame| TakeFrame::of_masks(vec![frame.masks[view].clone()]);
+        let frames: Vec<TakeFrame> = frames.iter().map(of_view).collect();
+        let only = std::slice::from_ref(camera);
+        let fit = fit_take(only, &frames, &TakeSettings::default(), &NoProgress).expect("a fit");
+        let distance = |joints: &[DVec3]| joints[9].distance(camera.centre());
+        let found = distance(&fit.frames[0].joints) / distance(&fit.frames[11].joints);
+        let drawn = distance(&joints[0]) / distance(&joints[11]);
+        assert!((found / drawn - 1.0).abs() < 0.1, "view {view}: {found:.2} for {drawn:.2}");
     }
 }
 
