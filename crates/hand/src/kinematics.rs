@@ -16,7 +16,8 @@ pub const JOINTS: usize = 21;
 #[derive(Debug, Clone, PartialEq)]
 pub struct PosedHand {
     /// Joint centres, mm: 0 the wrist, then base to tip of thumb (1–4), index (5–8), middle
-    /// (9–12), ring (13–16) and little finger (17–20); tips on the skin.
+    /// (9–12), ring (13–16) and little finger (17–20). A tip is the middle of the last segment's
+    /// rounded end, as far below the skin as that is thick: detectors of landmarks put it there.
     pub joints: [DVec3; JOINTS],
     /// The solids whose union is the hand and forearm, mm.
     pub primitives: Vec<Primitive>,
@@ -25,7 +26,30 @@ pub struct PosedHand {
     pub bones: Vec<[Bone; 3]>,
 }
 
-/// A digit's four joints, the directions of its three segments and the axes that it turns about.
+impl PosedHand {
+    /// Where the skin of thumb, index, middle, ring and little finger ends, mm: beyond the tips of this hand's `joints`.
+    ///
+    /// ```
+    /// use glam::DAffine3;
+    /// use phalanx_hand::{HandShape, Pose};
+    ///
+    /// let shape = HandShape::adult();
+    /// let hand = shape.pose(&Pose::REST, &DAffine3::IDENTITY);
+    /// let [_, _, middle, ..] = hand.ends(&shape);
+    /// assert!((middle.length() - shape.length_mm()).abs() < 1e-9);
+    /// ```
+    pub fn ends(&self, shape: &HandShape) -> [DVec3; 5] {
+        let fingers = shape.fingers().map(|finger| finger.radii_mm);
+        let radii = [&[shape.thumb.radii_mm], &fingers[..]].concat();
+        std::array::from_fn(|digit| {
+            let [last, tip] = [3, 4].map(|joint| self.joints[4 * digit + joint]);
+            tip + (tip - last).normalize_or_zero() * radii[digit][3]
+        })
+    }
+}
+
+/// A digit's three joints and the end of its skin, the directions of its three segments and the axes
+/// that it turns about.
 struct Chain {
     joints: [DVec3; 4],
     directions: [DVec3; 3],
@@ -63,8 +87,10 @@ impl HandShape {
         let chains = self.chains(pose).map(|chain| chain.turned(palm));
 
         let mut joints = [DVec3::ZERO; JOINTS];
-        for (digit, chain) in chains.iter().enumerate() {
-            joints[1 + 4 * digit..5 + 4 * digit].copy_from_slice(&chain.joints);
+        let radii = std::iter::once(&self.thumb.radii_mm)
+            .chain(self.fingers().map(|finger| &finger.radii_mm));
+        for ((own, chain), radii) in joints[1..].chunks_exact_mut(4).zip(&chains).zip(radii) {
+            own.copy_from_slice(&chain.spheres(radii).map(|sphere| sphere.center));
         }
         let solids = self.solids(&chains, palm);
 
@@ -74,6 +100,18 @@ impl HandShape {
             primitives: solids.primitives.iter().map(|solid| solid.moved(&motion)).collect(),
             bones: solids.bones,
         }
+    }
+
+    /// From the wrist to the end of the middle finger, all joints straight, mm.
+    ///
+    /// ```
+    /// use phalanx_hand::HandShape;
+    ///
+    /// assert!((HandShape::adult().length_mm() - 185.0).abs() < 1.0);
+    /// ```
+    pub fn length_mm(&self) -> f64 {
+        let [_, _, middle, ..] = self.chains(&Pose::REST);
+        middle.joints[3].length()
     }
 
     /// How each number of the pose moves the hand, in world coordinates: the derivative of
@@ -227,7 +265,17 @@ impl HandShape {
     }
 }
 
+/// From joint to joint, of segments the last of which is measured to the skin.
+fn joint_distances([first, middle, last]: [f64; 3], radii: &[f64; 4]) -> [f64; 3] {
+    [first, middle, last - radii[3]]
+}
+
 impl ThumbShape {
+    /// How far its four joints are from each other, base to tip, mm.
+    pub fn joint_distances_mm(&self) -> [f64; 3] {
+        joint_distances(self.lengths_mm, &self.radii_mm)
+    }
+
     fn chain(&self, pose: &Pose) -> Chain {
         let rest = DMat3::from_rotation_y(self.splay_deg.to_radians())
             * DMat3::from_rotation_x(self.drop_deg.to_radians())
@@ -239,6 +287,19 @@ impl ThumbShape {
 }
 
 impl FingerShape {
+    /// How far its four joints are from each other, knuckle to tip, mm.
+    ///
+    /// ```
+    /// use phalanx_hand::HandShape;
+    ///
+    /// let index = HandShape::adult().index;
+    /// let [_, _, to_tip] = index.joint_distances_mm();
+    /// assert_eq!(to_tip, index.lengths_mm[2] - index.radii_mm[3]);
+    /// ```
+    pub fn joint_distances_mm(&self) -> [f64; 3] {
+        joint_distances(self.lengths_mm, &self.radii_mm)
+    }
+
     fn chain(&self, finger: Digit, pose: &Pose) -> Chain {
         let [abduction, flexions @ ..] = finger.dofs().map(|dof| pose[dof]);
         // Away from the middle finger is towards -X for the ring and the little finger.
@@ -277,11 +338,16 @@ impl Chain {
         }
     }
 
-    /// The three segments; the last sphere ends at the skin.
-    fn push_segments(&self, solids: &mut Solids, digit: Digit, radii: &[f64; 4]) {
-        let mut spheres: [Sphere; 4] =
-            std::array::from_fn(|k| Sphere::new(self.joints[k], radii[k]));
+    /// The spheres at its joints and in its tip; the last one ends at the skin.
+    fn spheres(&self, radii: &[f64; 4]) -> [Sphere; 4] {
+        let mut spheres = std::array::from_fn(|k| Sphere::new(self.joints[k], radii[k]));
         spheres[3].center -= self.directions[2] * radii[3];
+        spheres
+    }
+
+    /// The three segments.
+    fn push_segments(&self, solids: &mut Solids, digit: Digit, radii: &[f64; 4]) {
+        let spheres = self.spheres(radii);
         for segment in 0..3 {
             let bone = Bone::Segment(digit, segment);
             solids.round_cone([(spheres[segment], bone), (spheres[segment + 1], bone)]);

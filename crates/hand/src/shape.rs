@@ -1,10 +1,9 @@
 //! The proportions of one person's hand.
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::pose::Pose;
 
 /// Which hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -121,7 +120,7 @@ pub struct ForearmShape {
 }
 
 impl HandShape {
-    /// A mean adult's right hand, 185 mm from wrist to middle tip and 81 mm broad at the knuckles.
+    /// A mean adult's right hand, 185 mm from the wrist to the end of the middle finger and 81 mm broad at the knuckles.
     ///
     /// Segment lengths after the radiographic means of Buryanov and Kotiuk (2010), soft tissue of
     /// the tips included; widths after published hand anthropometry.
@@ -194,19 +193,6 @@ impl HandShape {
     /// The four fingers, index first.
     pub fn fingers(&self) -> [&FingerShape; 4] {
         [&self.index, &self.middle, &self.ring, &self.little]
-    }
-
-    /// From the wrist to the tip of the middle finger, all joints straight, mm.
-    ///
-    /// ```
-    /// use phalanx_hand::HandShape;
-    ///
-    /// assert!((HandShape::adult().length_mm() - 185.0).abs() < 1.0);
-    /// ```
-    pub fn length_mm(&self) -> f64 {
-        const MIDDLE_TIP: usize = 12;
-        let joints = self.pose(&Pose::REST, &DAffine3::IDENTITY).joints;
-        joints[MIDDLE_TIP].distance(joints[0])
     }
 
     /// Checks every number.

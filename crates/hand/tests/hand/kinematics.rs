@@ -1,7 +1,7 @@
 //! Properties of the forward kinematics.
 
 use glam::{DAffine3, DMat3, DVec3};
-use phalanx_hand::{Digit, Dof, HandShape, Pose, Primitive, Side};
+use phalanx_hand::{Digit, Dof, FingerShape, HandShape, Pose, Primitive, Side};
 use proptest::prelude::*;
 
 use crate::property;
@@ -27,8 +27,8 @@ proptest! {
     fn bones_keep_their_lengths(pose in any_pose()) {
         let shape = HandShape::adult();
         let hand = shape.pose(&pose, &DAffine3::IDENTITY);
-        let lengths = std::iter::once(shape.thumb.lengths_mm)
-            .chain(shape.fingers().map(|finger| finger.lengths_mm))
+        let lengths = std::iter::once(shape.thumb.joint_distances_mm())
+            .chain(shape.fingers().map(FingerShape::joint_distances_mm))
             .flatten();
         for ((from, to), length) in bones().zip(lengths) {
             prop_assert!((hand.joints[from].distance(hand.joints[to]) - length).abs() < 1e-9);
@@ -71,9 +71,7 @@ proptest! {
     #[test]
     fn solids_contain_their_joints(pose in any_pose()) {
         let hand = HandShape::adult().pose(&pose, &DAffine3::IDENTITY);
-        // All but the tips, which lie on the skin.
-        for joint in (0..21).filter(|joint| *joint == 0 || joint % 4 != 0) {
-            let at = hand.joints[joint];
+        for (joint, &at) in hand.joints.iter().enumerate() {
             let inside = hand.primitives.iter().any(|solid| {
                 !matches!(solid, Primitive::GeneralisedCylinder { .. })
                     && solid.spheres().iter().any(|sphere| sphere.center.distance(at) <= sphere.radius)
@@ -115,8 +113,7 @@ fn signs_are_those_of_the_conventions() {
 #[test]
 fn an_adult_has_an_adults_measures() {
     let shape = HandShape::adult();
-    let hand = shape.pose(&Pose::REST, &DAffine3::IDENTITY);
-    let length = hand.joints[12].z;
+    let length = shape.length_mm();
     assert!((180.0..195.0).contains(&length), "hand length {length} mm");
     let breadth = shape.index.base_mm.x + shape.palm.knuckle_radii_mm[0] - shape.little.base_mm.x
         + shape.palm.knuckle_radii_mm[3];

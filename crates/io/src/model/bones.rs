@@ -63,10 +63,10 @@ impl Skeleton {
         let thumb_rest = DQuat::from_rotation_y(thumb.splay_deg.to_radians())
             * DQuat::from_rotation_x(thumb.drop_deg.to_radians())
             * DQuat::from_rotation_z(-thumb.roll_deg.to_radians());
-        push_digit(&mut bones, Digit::Thumb, thumb.base_mm, thumb_rest, thumb.lengths_mm);
+        push_digit(&mut bones, Digit::Thumb, thumb.base_mm, thumb_rest, thumb.joint_distances_mm());
         for (digit, finger) in Digit::FINGERS.into_iter().zip(shape.fingers()) {
             let rest = DQuat::from_rotation_y(finger.splay_deg.to_radians());
-            push_digit(&mut bones, digit, finger.base_mm, rest, finger.lengths_mm);
+            push_digit(&mut bones, digit, finger.base_mm, rest, finger.joint_distances_mm());
         }
         if shape.side == Side::Left {
             bones.iter_mut().for_each(SkeletonBone::mirror);

@@ -10,8 +10,8 @@ use phalanx_segmentation::Mask;
 /// A silhouette and what it is of, in pixels.
 pub(super) struct DrawnHand {
     pub(super) mask: Mask,
-    /// The joints, the wrist first.
-    pub(super) joints: Vec<DVec2>,
+    /// The joints, the wrist first, and the ends of the digits.
+    pub(super) points: Vec<DVec2>,
     /// Along the forearm, towards the hand.
     pub(super) direction: DVec2,
 }
@@ -25,20 +25,21 @@ impl DrawnHand {
         camera: &Camera,
     ) -> Result<Option<Self>> {
         let posed = hand.pose(pose, rest);
-        let joints: Option<Vec<DVec2>> = posed.joints.iter().map(|&j| camera.project(j)).collect();
+        let points = posed.joints.into_iter().chain(posed.ends(hand));
+        let points: Option<Vec<DVec2>> = points.map(|point| camera.project(point)).collect();
         let behind = camera.project(rest.transform_point3(DVec3::NEG_Z));
-        let (Some(joints), Some(behind)) = (joints, behind) else { return Ok(None) };
+        let (Some(points), Some(behind)) = (points, behind) else { return Ok(None) };
         let mask = Mask::from(Renderer::new(camera)?.silhouette(&posed.primitives)?);
-        let direction = (joints[0] - behind).normalize();
-        Ok(Some(Self { mask, joints, direction }))
+        let direction = (points[0] - behind).normalize();
+        Ok(Some(Self { mask, points, direction }))
     }
 
     pub(super) fn wrist(&self) -> DVec2 {
-        self.joints[0]
+        self.points[0]
     }
 
-    /// From the wrist to the furthest joint.
+    /// From the wrist to the furthest end.
     pub(super) fn length(&self) -> f64 {
-        self.joints.iter().map(|joint| joint.distance(self.wrist())).fold(0.0, f64::max)
+        self.points.iter().map(|point| point.distance(self.wrist())).fold(0.0, f64::max)
     }
 }

@@ -93,5 +93,5 @@ fn sample(hand: &HandShape, number: u64) -> Result<Option<DrawnHand>> {
             < f64::from(SIDE) / 2.0 - MARGIN
     };
     let drawn = DrawnHand::of(&hand, &pose, &rest, &camera)?;
-    Ok(drawn.filter(|drawn| drawn.joints.iter().all(within)))
+    Ok(drawn.filter(|drawn| drawn.points.iter().all(within)))
 }

@@ -27,8 +27,8 @@ pub(crate) const EXPERIMENT: Experiment = Experiment {
     run,
 };
 
-/// The fingertip among the joints.
-const MIDDLE_TIP: usize = 12;
+/// The middle finger among the digits.
+const MIDDLE_FINGER: usize = 2;
 /// Two points are the same place on the hand when they are no further apart, px: less than half
 /// of a finger's breadth.
 const SAME_PLACE_PX: f64 = 3.0;
@@ -162,7 +162,7 @@ fn rendered(lab: &Lab<'_>) -> Result<Subject> {
     let photograph = photograph(camera, &lab.hand, &pose, &lab.rig, 0)?;
     let rest = lab.rig.volume.rest_frame();
     let tip = phalanx::working_camera(camera)?
-        .project(lab.hand.pose(&pose, &rest).joints[MIDDLE_TIP])
+        .project(lab.hand.pose(&pose, &rest).ends(&lab.hand)[MIDDLE_FINGER])
         .context("the middle finger's tip is behind the camera")?;
     let small = downsample(&photograph, WORKING_SIZE.0, WORKING_SIZE.1)?;
     Ok(Subject {

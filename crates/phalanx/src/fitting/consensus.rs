@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::found::Found;
 use super::frame_fit::FrameFitter;
 use super::misfit::DISAGREEMENT;
-use super::observation::{Sight, length_mm};
+use super::observation::Sight;
 use super::search;
 use super::starts;
 use super::take_frame::TakeFrame;
@@ -100,7 +100,7 @@ const DISPUTED: usize = 4;
 /// # Errors
 /// No hand.
 pub(super) fn agreed(frames: &[DAffine3], hand: &HandShape) -> Result<Vec<DAffine3>> {
-    let reach = 0.5 * length_mm(hand);
+    let reach = 0.5 * hand.length_mm();
     let most = central(frames, reach).ok_or(Error::NoHand)?;
     let back = most.matrix3.y_axis;
     let opposed: Vec<DAffine3> =

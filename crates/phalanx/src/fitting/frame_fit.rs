@@ -69,7 +69,7 @@ impl FrameFitter<'_> {
 
     /// The ball that holds a hand with its wrist and arm as a frame has them.
     pub(super) fn ball(&self, frame: &DAffine3) -> BoundingSphere {
-        let length = observation::length_mm(self.hand);
+        let length = self.hand.length_mm();
         observation::ball_of(frame.translation, frame.matrix3.z_axis, length)
     }
 
@@ -136,7 +136,7 @@ impl FrameFitter<'_> {
         crop: &HandCrop,
         frame: &DAffine3,
     ) -> Option<SilhouetteObservation> {
-        let length = observation::length_mm(self.hand);
+        let length = self.hand.length_mm();
         let arm = observation::arm_of(frame.translation, frame.matrix3.z_axis, length);
         crop.evidence(&arm).ok()
     }
@@ -144,7 +144,7 @@ impl FrameFitter<'_> {
     /// Whether what a view shows leaves its picture elsewhere than along the arm of the pose.
     pub(super) fn leaves_picture(&self, found: &Found, view: usize) -> bool {
         let frame = found.frame(self.hand);
-        let length = observation::length_mm(self.hand);
+        let length = self.hand.length_mm();
         let palm = observation::palm_of(frame.translation, frame.matrix3.z_axis, length);
         let Some(crop) = &found.crops[view] else { return false };
         crop.exits.width_ahead_of(&palm) > LEAVES

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 use phalanx_camera::Camera;
-use phalanx_hand::{HandShape, Pose};
+use phalanx_hand::HandShape;
 use phalanx_segmentation::{HandDetection, HandDetector, Mask};
 
 use super::points::CameraPoints;
@@ -54,17 +54,11 @@ pub(super) fn palm_of(wrist: DVec3, arm: DVec3, length: f64) -> Arm {
     Arm { cut: wrist + arm * (KNOWN_ARM * length), direction: arm }
 }
 
-/// How long a hand is from the wrist to the middle finger's tip, mm.
-pub(super) fn length_mm(hand: &HandShape) -> f64 {
-    let joints = hand.pose(&Pose::REST, &DAffine3::IDENTITY).joints;
-    joints[12].distance(joints[0])
-}
-
 /// The hand with as much of its forearm as is known, and half its width more.
 pub(super) fn fitted_hand(hand: &HandShape) -> HandShape {
     let mut fitted = hand.clone();
     let half_width = hand.forearm.half_widths_mm[0];
-    fitted.forearm.length_mm = KNOWN_ARM * length_mm(hand) + half_width;
+    fitted.forearm.length_mm = KNOWN_ARM * hand.length_mm() + half_width;
     fitted
 }
 

@@ -7,7 +7,7 @@ use super::consensus;
 use super::found::Found;
 use super::frame_fit::{FrameFitter, Postures};
 use super::known::Known;
-use super::observation::{Sight, length_mm};
+use super::observation::Sight;
 use super::repertoire;
 use super::report::{FrameFit, Reporter};
 use super::search;
@@ -69,7 +69,7 @@ pub fn fit_frame(cameras: &[Camera], frame: &TakeFrame, take: &TakeFit) -> Resul
 fn places(take: &TakeFit) -> Vec<DAffine3> {
     let rest = take.volume.volume.rest_frame();
     let frames = right(take).map(|frame| starts::frame_at(&frame.pose, &rest, &take.hand));
-    let reach = 0.5 * length_mm(&take.known.hand.shape);
+    let reach = 0.5 * take.known.hand.shape.length_mm();
     let apart = |one: &DAffine3, other: &DAffine3| consensus::apart(one, other, reach);
     repertoire::spread(std::iter::once(rest).chain(frames), apart, SAME_PLACE, PLACES)
 }

@@ -6,8 +6,9 @@ use phalanx_render::Renderer;
 use phalanx_segmentation::Mask;
 
 use crate::error::{Error, Result};
+use crate::geometry::bound::Bound;
 use crate::geometry::drawn_term::DrawnTerm;
-use crate::geometry::sphere_hull::{Bound, ClosestApproach, SphereHull};
+use crate::geometry::sphere_hull::{ClosestApproach, SphereHull};
 use crate::observation::boundary::boundary_edges;
 use crate::observation::silhouette::SilhouetteObservation;
 
