@@ -11,7 +11,6 @@ use phalanx::Progress;
 use phalanx_camera::Camera;
 use phalanx_hand::{HandShape, JOINTS, Landmark, Pose, Primitive};
 
-use super::deviation::{PoseCovariance, joint_deviations};
 use super::frame::FrameName;
 use super::lose::Lose;
 use super::reference::Points;
@@ -118,18 +117,13 @@ pub struct Found {
 }
 
 impl Found {
-    /// A hand in a pose, with what is known of the pose.
-    pub fn posed(
-        hand: &HandShape,
-        pose: &Pose,
-        rest: &DAffine3,
-        covariance: Option<&PoseCovariance>,
-    ) -> Self {
+    /// A hand in a pose of which nothing more is known.
+    pub fn posed(hand: &HandShape, pose: &Pose, rest: &DAffine3) -> Self {
         let posed = hand.pose(pose, rest);
         Self {
             joints: posed.joints,
             solids: posed.primitives,
-            deviations: covariance.map(|known| joint_deviations(hand, pose, rest, known)),
+            deviations: None,
             doubts: Vec::new(),
             left_out: Vec::new(),
         }

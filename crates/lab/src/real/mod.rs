@@ -7,7 +7,6 @@ pub mod angles;
 mod company;
 pub mod constant;
 pub(crate) mod contact_sheet;
-pub mod deviation;
 pub(crate) mod drawn_takes;
 pub mod frame;
 pub(crate) mod interior_edges;
@@ -183,9 +182,7 @@ impl Evaluation<'_> {
         let landmarks = self.landmarks()?;
         for views in subsets::of(&self.take.camera_names(), &self.arguments.cameras)? {
             let jobs = self.jobs(&views);
-            let methods: Vec<MethodName> = jobs.iter().map(|job| job.method).collect();
-            let prepared =
-                Prepared::new(self.take, &views, self.reference, &methods, self.progress);
+            let prepared = Prepared::new(self.reference);
             for Job { method, input, frames } in &jobs {
                 let sequence = Sequence {
                     take: self.take,

@@ -89,7 +89,7 @@ mod tests {
     }
 
     fn open_hand() -> Found {
-        Found::posed(&HandShape::adult(), &Pose::REST, &DAffine3::IDENTITY, None)
+        Found::posed(&HandShape::adult(), &Pose::REST, &DAffine3::IDENTITY)
     }
 
     #[test]

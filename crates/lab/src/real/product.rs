@@ -1,45 +1,64 @@
-//! The product as its programs are used: a model trained for the take's cameras, then frame by frame
-//! `phalanx estimate`, with and without `--refine`.
+//! A model trained for the take's cameras where its hand works, then frame by frame `phalanx estimate`, with and without
+//! `--refine`.
 
-use anyhow::Result;
+use std::sync::OnceLock;
+
+use anyhow::{Result, anyhow};
 use image::{DynamicImage, RgbImage};
 use phalanx::{
-    Estimate, Estimator, Framing, Picture, Preset, Progress, RefinedEstimate, Refiner, Trainer,
-    Workspace,
+    Estimate, Estimator, Framing, Picture, Preset, Progress, RefinedEstimate, Refiner, TakeFit,
+    Trainer, Workspace, trusted_volume,
 };
-use phalanx_camera::{Rig, Volume};
+use phalanx_camera::Rig;
 use phalanx_hand::HandShape;
-use phalanx_refine::{PoseFit, PoseFitSettings};
-use phalanx_segmentation::{ForearmCue, Mask, SkinModel};
+use phalanx_io::take::TakeHeader;
+use phalanx_refine::PoseFitSettings;
+use phalanx_segmentation::{Mask, SkinModel};
 
-use super::deviation::PoseCovariance;
 use super::method::{Found, Method, Outcome, Sequence, each_frame};
-use super::take::{Input, Take};
+use super::take::Input;
+use super::whole_take::Fits;
 
-/// Side of the cube in which the hand works by the default of `phalanx import-calibration`, mm.
-const SIDE_MM: f64 = 300.0;
+/// The models for some of a take's cameras, one for each input, each trained when it is first asked for.
+#[derive(Default)]
+pub struct Products([OnceLock<Result<Product>>; Input::ALL.len()]);
 
-/// Overlap below which `phalanx estimate` doubts a refined hand.
-const GOOD_OVERLAP: f64 = 0.8;
+impl Products {
+    /// That of a sequence, or why there is none.
+    fn of(
+        &self,
+        sequence: &Sequence<'_>,
+        fits: &Fits,
+        progress: &dyn Progress,
+    ) -> Result<&Result<Product>> {
+        let cell = &self.0[sequence.input as usize];
+        if let Some(product) = cell.get() {
+            return Ok(product);
+        }
+        let product = match fits.take(sequence, progress)? {
+            Ok(take) => Product::train(sequence, take, progress),
+            Err(error) => Err(anyhow!("{error}")),
+        };
+        Ok(cell.get_or_init(|| product))
+    }
+}
 
 /// A model for some of a take's cameras.
-pub struct Product {
+struct Product {
     estimator: Estimator,
     refiner: Refiner,
     skin: SkinModel,
 }
 
 impl Product {
-    /// Imports the take's calibration and trains for the cameras of these numbers, as
-    /// `phalanx train --preset fast --framing window` does.
+    /// Trains for a sequence's cameras where the take's hand works, as `phalanx rig volume` and `phalanx train
+    /// --preset fast --framing window` do.
     ///
     /// # Errors
-    /// Cameras for which no volume can be guessed, such as a single one, or nothing can be learnt.
-    pub fn train(take: &Take, views: &[usize], progress: &dyn Progress) -> Result<Self> {
-        let all: Vec<usize> = (0..take.cameras.len()).collect();
-        let volume = Volume::between(&take.cameras(&all), SIDE_MM)?;
-        let rig = Rig { cameras: take.cameras(views), volume };
-        let hand = HandShape { side: take.side, ..HandShape::adult() };
+    /// A take without any hand, or nothing that can be learnt.
+    fn train(sequence: &Sequence<'_>, take: &TakeFit, progress: &dyn Progress) -> Result<Self> {
+        let rig = Rig { cameras: sequence.cameras(), volume: trusted_volume(take)?.volume };
+        let hand = HandShape { side: sequence.take.side, ..HandShape::adult() };
         let trainer = Trainer::preset(Preset::Fast).framing(Framing::Window);
         let estimator = trainer.fit(&rig, &hand, progress)?;
         let refinement = PoseFitSettings::of_strangers();
@@ -70,36 +89,45 @@ impl Product {
 
     fn refine(&self, estimate: Estimate) -> Result<Found> {
         let fitted = self.refiner.refine_estimate(&self.estimator, estimate)?;
-        let RefinedEstimate { estimate, fit, .. } = fitted;
-        let prior = self.refiner.prior(&estimate.pose, &estimate.std)?;
-        let covariance = PoseCovariance::new(prior.dofs(), &fit.covariance);
-        let (hand, rest) = (self.refiner.hand(), self.refiner.rest());
-        let found = Found::posed(hand, &fit.pose, rest, Some(&covariance));
-        Ok(Found { doubts: [forearm_doubts(&estimate), fit_doubts(&fit)].concat(), ..found })
+        let RefinedEstimate { refined, fit, .. } = fitted;
+        let mut found = self.found(&refined);
+        if !fit.converged {
+            found.doubts.push("stopped before it settled".to_owned());
+        }
+        Ok(found)
+    }
+
+    fn found(&self, estimate: &Estimate) -> Found {
+        let Estimate { pose, std, doubts, .. } = estimate;
+        let Rig { cameras, volume } = self.estimator.rig();
+        let header = TakeHeader {
+            hand: self.estimator.hand().clone(),
+            world_from_hand: volume.rest_frame(),
+            views: cameras.iter().map(|camera| camera.name.clone()).collect(),
+            rate_hz: None,
+            model: None,
+        };
+        Found {
+            deviations: header.estimate(*pose, *std).joint_std,
+            doubts: doubts.iter().map(|doubt| format!("{doubt:?}")).collect(),
+            ..Found::posed(&header.hand, pose, &header.world_from_hand)
+        }
     }
 }
 
-/// What `phalanx estimate` says of forearms.
-fn forearm_doubts(estimate: &Estimate) -> Vec<String> {
-    let doubt = |forearm: &phalanx_segmentation::Forearm| match forearm.cue {
-        ForearmCue::SmoothEnd => Some("a forearm's end was guessed".to_owned()),
-        ForearmCue::Border if forearm.crossings > 1 => Some("more than one forearm".to_owned()),
-        ForearmCue::Border => None,
-    };
-    let views = estimate.observation.views.iter();
-    views.filter_map(|view| doubt(&view.silhouette.forearm)).collect()
-}
-
-/// What `phalanx estimate --refine` says of a fit.
-fn fit_doubts(refined: &PoseFit) -> Vec<String> {
-    let overlaps = refined.ious.iter().filter(|&&overlap| overlap < GOOD_OVERLAP);
-    let doubts = overlaps.map(|overlap| format!("overlaps a silhouette by {overlap:.2} only"));
-    let unsettled = (!refined.converged).then(|| "stopped before it settled".to_owned());
-    doubts.chain(unsettled).collect()
+/// Every frame refused for one reason.
+fn refused(sequence: &Sequence<'_>, reason: &anyhow::Error) -> Vec<Outcome> {
+    let refused = |_| Outcome { found: Err(anyhow!("{reason:#}")), cpu_ms: None };
+    sequence.frames.iter().map(refused).collect()
 }
 
 /// `phalanx estimate`.
-pub struct Estimated<'a>(pub &'a Product);
+pub struct Estimated<'a> {
+    /// The models.
+    pub products: &'a Products,
+    /// What says where the hand works.
+    pub fits: &'a Fits,
+}
 
 impl Method for Estimated<'_> {
     fn name(&self) -> &'static str {
@@ -107,20 +135,23 @@ impl Method for Estimated<'_> {
     }
 
     fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>> {
-        let Product { estimator, .. } = self.0;
-        let rest = estimator.rig().volume.rest_frame();
+        let product = match self.products.of(sequence, self.fits, progress)? {
+            Ok(product) => product,
+            Err(reason) => return Ok(refused(sequence, reason)),
+        };
         each_frame(sequence, progress, Workspace::default, |workspace, _, pictures| {
-            let estimate = self.0.estimate(sequence.input, pictures, workspace)?;
-            let covariance =
-                PoseCovariance::independent(&estimate.std.map(Option::unwrap_or_default));
-            let found = Found::posed(estimator.hand(), &estimate.pose, &rest, Some(&covariance));
-            Ok(Found { doubts: forearm_doubts(&estimate), ..found })
+            Ok(product.found(&product.estimate(sequence.input, pictures, workspace)?))
         })
     }
 }
 
 /// `phalanx estimate --refine`.
-pub struct RefinedFrames<'a>(pub &'a Product);
+pub struct RefinedFrames<'a> {
+    /// The models.
+    pub products: &'a Products,
+    /// What says where the hand works.
+    pub fits: &'a Fits,
+}
 
 impl Method for RefinedFrames<'_> {
     fn name(&self) -> &'static str {
@@ -128,9 +159,12 @@ impl Method for RefinedFrames<'_> {
     }
 
     fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>> {
+        let product = match self.products.of(sequence, self.fits, progress)? {
+            Ok(product) => product,
+            Err(reason) => return Ok(refused(sequence, reason)),
+        };
         each_frame(sequence, progress, Workspace::default, |workspace, _, pictures| {
-            let estimate = self.0.estimate(sequence.input, pictures, workspace)?;
-            self.0.refine(estimate)
+            product.refine(product.estimate(sequence.input, pictures, workspace)?)
         })
     }
 }

@@ -135,7 +135,7 @@ pub fn found(cameras: &[Camera], hand: &HandShape, rest: &DAffine3, fit: &FrameF
         deviations: Some(fit.joint_std.map(along_each)),
         doubts: fit.doubts.iter().map(|doubt| format!("{doubt:?}")).collect(),
         left_out: missing.map(|(camera, _)| camera.name.clone()).collect(),
-        ..Found::posed(hand, &fit.pose, rest, None)
+        ..Found::posed(hand, &fit.pose, rest)
     }
 }
 

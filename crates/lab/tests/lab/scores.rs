@@ -136,7 +136,7 @@ fn row(answer: impl Fn(usize) -> anyhow::Result<Found>) -> Row {
 }
 
 fn right(frame: usize) -> Found {
-    Found::posed(&HandShape::adult(), &pose(frame), &DAffine3::IDENTITY, None)
+    Found::posed(&HandShape::adult(), &pose(frame), &DAffine3::IDENTITY)
 }
 
 #[test]
@@ -159,7 +159,7 @@ fn right_answers_have_no_error() {
 fn a_shifted_hand_is_off_by_its_shift() {
     let row = row(|frame| {
         let shift = DAffine3::from_translation(DVec3::new(0.0, 0.0, 12.0));
-        let found = Found::posed(&HandShape::adult(), &pose(frame), &shift, None);
+        let found = Found::posed(&HandShape::adult(), &pose(frame), &shift);
         let deviations = Some([DVec3::splat(10.0); JOINTS]);
         Ok(Found { deviations, doubts: vec!["made up".to_owned()], ..found })
     });

@@ -121,7 +121,7 @@ impl Trial<'_> {
         let rest = fit.volume.volume.rest_frame();
         for edges in 0..=NOISES.len() {
             let outcome = |fitted: &Fitted| Outcome {
-                found: Ok(Found::posed(&fit.hand, &fitted.poses[edges], &rest, None)),
+                found: Ok(Found::posed(&fit.hand, &fitted.poses[edges], &rest)),
                 cpu_ms: None,
             };
             let outcomes: Vec<Outcome> = fitted.iter().map(outcome).collect();
