@@ -169,12 +169,16 @@ fn unfinished(checkpoint: &Checkpoint) -> Option<PartialTraining> {
     .ok()
 }
 
-/// An error of a training that went on; that of another one says which file to remove.
+/// An error of a training that went on: that of another one says which file to remove, and one whose cameras do not show
+/// the hand how to find where it works.
 fn explained(error: Error, checkpoint: &Checkpoint) -> anyhow::Error {
     match (&error, checkpoint.path()) {
         (Error::ForeignPart { .. }, Some(path)) => anyhow::anyhow!(
             "{}: an unfinished training with other settings ({error}); finish it, or remove the file",
             path.display()
+        ),
+        (Error::TooManyLost { .. }, _) => anyhow::anyhow!(
+            "{error}; `phalanx rig volume` finds in a recording where the hand works"
         ),
         _ => error.into(),
     }

@@ -141,12 +141,17 @@ fn what_cannot_be_trained_is_named_and_leaves_nothing() {
     let away = desk.replacen("center_mm = [0, 0, 0]", "center_mm = [0, 0, 600]", 1);
     assert_ne!(away, desk);
     std::fs::write(folder.path().join("away.toml"), away).unwrap();
+    // It works where they often do not look.
+    let wide = desk.replacen("size_mm = [100, 100, 100]", "size_mm = [900, 100, 900]", 1);
+    assert_ne!(wide, desk);
+    std::fs::write(folder.path().join("wide.toml"), wide).unwrap();
     for (arguments, said) in [
         (&["--samples", "3"][..], "3 is not between 100 and 10000000"),
         (&["--shard", "3/2"], "there is no shard 3 of 2"),
         (&["--cameras", "left"], "left"),
         (&["--rig", "missing.toml"], "missing.toml"),
         (&["--rig", "away.toml"], "the volume's center_mm lies outside its picture"),
+        (&["--rig", "wide.toml", "--framing", "window"], "`phalanx rig volume` finds"),
         (&["--poses", "missing.csv"], "missing.csv"),
     ] {
         let arguments = ["train", "--preset", "fast", "--out", "out"].iter().chain(arguments);
