@@ -6,7 +6,7 @@ use phalanx_hand::{Dof, HandShape, Pose};
 use phalanx_refine::PosePrior;
 
 use super::found::Found;
-use super::motion::FREEDOM;
+use super::motion::{mean, unlikely};
 use super::times::Times;
 use crate::error::Result;
 
@@ -81,8 +81,7 @@ impl LineOfSight {
         let [way, turned] = self.variances(steps);
         let moved = (other.translation - one.translation).to_array().map(|x| x * x / way);
         let turned = turn(one, other).to_array().map(|x| x * x / turned);
-        let of = |square: &f64| 0.5 * (FREEDOM + 1.0) * (square / FREEDOM).ln_1p();
-        moved.iter().chain(&turned).map(of).sum()
+        moved.into_iter().chain(turned).map(unlikely).sum()
     }
 
     /// What is known of where a hand is, said in a frame of rest that it is near, also beside those of other frames, each with
@@ -119,11 +118,6 @@ impl LineOfSight {
 /// The turn from one frame to another: its axis, as long as its angle in radians.
 fn turn(one: &DAffine3, other: &DAffine3) -> DVec3 {
     DQuat::from_mat3(&(other.matrix3 * one.matrix3.transpose())).to_scaled_axis()
-}
-
-fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
-    (count > 0.0).then(|| sum / count)
 }
 
 #[cfg(test)]

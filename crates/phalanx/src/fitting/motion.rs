@@ -43,13 +43,13 @@ impl Motion {
         };
         let step = |dof: Dof| {
             let squares = pairs().map(|(one, other, away)| (other[dof] - one[dof]).powi(2) / away);
-            mean(squares).max(LEAST.powi(2))
+            mean(squares).unwrap_or(0.0).max(LEAST.powi(2))
         };
         let any = |dof: Dof| {
             let values = || poses.iter().flatten().map(|pose| pose[dof]);
-            let middle = mean(values());
+            let middle = mean(values()).unwrap_or(0.0);
             let variance = mean(values().map(|value| (value - middle).powi(2)));
-            variance.max(prior.deviation(dof).powi(2))
+            variance.unwrap_or(0.0).max(prior.deviation(dof).powi(2))
         };
         let is_any = pairs().next().is_some();
         let step = |dof: Dof| if dof.is_internal() { step(dof) } else { f64::INFINITY };
@@ -67,10 +67,7 @@ impl Motion {
     /// What speaks against one pose so many steps after another: joints walk at random, mostly slowly and at
     /// times fast (Student's distribution).
     pub(super) fn against(&self, one: &Pose, other: &Pose, away: f64) -> f64 {
-        let of = |dof: Dof| {
-            let square = ((other[dof] - one[dof]) / self.known(dof, away)).powi(2);
-            0.5 * (FREEDOM + 1.0) * (square / FREEDOM).ln_1p()
-        };
+        let of = |dof: Dof| unlikely(((other[dof] - one[dof]) / self.known(dof, away)).powi(2));
         Dof::ALL.map(of).iter().sum()
     }
 
@@ -84,9 +81,15 @@ impl Motion {
     }
 }
 
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
+/// What speaks against a change of this square over its variance, by Student's distribution.
+pub(super) fn unlikely(square: f64) -> f64 {
+    0.5 * (FREEDOM + 1.0) * (square / FREEDOM).ln_1p()
+}
+
+/// `None` of no values.
+pub(super) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
-    sum / count
+    (count > 0.0).then(|| sum / count)
 }
 
 #[cfg(test)]
