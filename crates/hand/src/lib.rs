@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod chain;
 mod csv_file;
 mod dof;
 mod error;
@@ -9,6 +10,7 @@ mod pose;
 mod primitive;
 mod prior;
 mod shape;
+mod solids;
 mod twist;
 mod variation;
 

@@ -119,6 +119,33 @@ pub struct ForearmShape {
     pub flatness: f64,
 }
 
+/// From joint to joint, of segments the last of which is measured to the skin.
+fn joint_distances([first, middle, last]: [f64; 3], radii: &[f64; 4]) -> [f64; 3] {
+    [first, middle, last - radii[3]]
+}
+
+impl FingerShape {
+    /// How far its four joints are from each other, knuckle to tip, mm.
+    ///
+    /// ```
+    /// use phalanx_hand::HandShape;
+    ///
+    /// let index = HandShape::adult().index;
+    /// let [_, _, to_tip] = index.joint_distances_mm();
+    /// assert_eq!(to_tip, index.lengths_mm[2] - index.radii_mm[3]);
+    /// ```
+    pub fn joint_distances_mm(&self) -> [f64; 3] {
+        joint_distances(self.lengths_mm, &self.radii_mm)
+    }
+}
+
+impl ThumbShape {
+    /// How far its four joints are from each other, base to tip, mm.
+    pub fn joint_distances_mm(&self) -> [f64; 3] {
+        joint_distances(self.lengths_mm, &self.radii_mm)
+    }
+}
+
 impl HandShape {
     /// A mean adult's right hand, 185 mm from the wrist to the end of the middle finger and 81 mm broad at the knuckles.
     ///
