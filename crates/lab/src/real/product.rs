@@ -1,4 +1,4 @@
-//! A model trained for the take's cameras where its hand works, then frame by frame `phalanx estimate`, with and without
+//! A model trained for the take's cameras and hand where it works, then frame by frame `phalanx estimate`, with and without
 //! `--refine`.
 
 use std::sync::OnceLock;
@@ -10,7 +10,6 @@ use phalanx::{
     Trainer, Workspace, trusted_volume,
 };
 use phalanx_camera::Rig;
-use phalanx_hand::HandShape;
 use phalanx_io::take::TakeHeader;
 use phalanx_refine::PoseFitSettings;
 use phalanx_segmentation::{Mask, SkinModel};
@@ -51,16 +50,15 @@ struct Product {
 }
 
 impl Product {
-    /// Trains for a sequence's cameras where the take's hand works, as `phalanx rig volume` and `phalanx train
-    /// --preset fast --framing window` do.
+    /// Trains for a sequence's cameras and the take's hand where it works, as `phalanx track --save-hand`, `phalanx rig volume`
+    /// and `phalanx train --hand --preset fast --framing window` do.
     ///
     /// # Errors
     /// A take without any hand, or nothing that can be learnt.
     fn train(sequence: &Sequence<'_>, take: &TakeFit, progress: &dyn Progress) -> Result<Self> {
         let rig = Rig { cameras: sequence.cameras(), volume: trusted_volume(take)?.volume };
-        let hand = HandShape { side: sequence.take.side, ..HandShape::adult() };
         let trainer = Trainer::preset(Preset::Fast).framing(Framing::Window);
-        let estimator = trainer.fit(&rig, &hand, progress)?;
+        let estimator = trainer.fit(&rig, &take.hand, progress)?;
         let refinement = PoseFitSettings::of_strangers();
         let refiner = Refiner::for_estimator(&estimator, refinement)?;
         Ok(Self { estimator, refiner, skin: SkinModel::builtin() })
