@@ -108,7 +108,8 @@ fn import(arguments: &Arguments, missing: &Missing) -> Result<()> {
     let missing = if known.is_none() { volume.not_given() } else { Vec::new() };
     if !missing.is_empty() {
         eprintln!(
-            "note: where the hand works was not given ({}) and is guessed: look at [volume] in {}",
+            "note: where the hand works was not given ({}) and is guessed: look at [volume] in {}, or let `phalanx \
+             rig volume` find it in a recording",
             missing.join(", "),
             out.display()
         );
