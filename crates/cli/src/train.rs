@@ -178,7 +178,7 @@ fn explained(error: Error, checkpoint: &Checkpoint) -> anyhow::Error {
             path.display()
         ),
         (Error::TooManyLost { .. }, _) => anyhow::anyhow!(
-            "{error}; `phalanx rig volume` finds in a recording where the hand works"
+            "{error}; `phalanx rig volume` finds where the hand works, from a recording"
         ),
         _ => error.into(),
     }

@@ -154,7 +154,7 @@ impl TakeHeader {
     /// std[Dof::IndexDip.index()] = Some(0.1);
     /// let estimate = header.estimate(Pose::REST, std);
     /// let tip = estimate.joint_std.expect("one number has a deviation")[8];
-    /// assert!((tip.y - 1.36).abs() < 0.01, "the index's tip is 13.6 mm before its last joint");
+    /// assert!((tip.y - 1.36).abs() < 0.01, "the index's tip is 13.6 mm from its last joint");
     /// ```
     pub fn estimate(&self, pose: Pose, std: [Option<f64>; Dof::COUNT]) -> PoseEstimate {
         let posed = self.posed(&pose);

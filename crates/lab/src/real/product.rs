@@ -40,6 +40,27 @@ impl Products {
         };
         Ok(cell.get_or_init(|| product))
     }
+
+    /// What is made of the estimate of each frame; all are refused if there is no model.
+    fn answers(
+        &self,
+        sequence: &Sequence<'_>,
+        fits: &Fits,
+        progress: &dyn Progress,
+        found: impl Fn(&Product, Estimate) -> Result<Found> + Sync,
+    ) -> Result<Vec<Outcome>> {
+        match self.of(sequence, fits, progress)? {
+            Ok(product) => {
+                each_frame(sequence, progress, Workspace::default, |workspace, _, pictures| {
+                    found(product, product.estimate(sequence.input, pictures, workspace)?)
+                })
+            }
+            Err(reason) => {
+                let refused = |_| Outcome { found: Err(anyhow!("{reason:#}")), cpu_ms: None };
+                Ok(sequence.frames.iter().map(refused).collect())
+            }
+        }
+    }
 }
 
 /// A model for some of a take's cameras.
@@ -113,12 +134,6 @@ impl Product {
     }
 }
 
-/// Every frame refused for one reason.
-fn refused(sequence: &Sequence<'_>, reason: &anyhow::Error) -> Vec<Outcome> {
-    let refused = |_| Outcome { found: Err(anyhow!("{reason:#}")), cpu_ms: None };
-    sequence.frames.iter().map(refused).collect()
-}
-
 /// `phalanx estimate`.
 pub struct Estimated<'a> {
     /// The models.
@@ -133,13 +148,8 @@ impl Method for Estimated<'_> {
     }
 
     fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>> {
-        let product = match self.products.of(sequence, self.fits, progress)? {
-            Ok(product) => product,
-            Err(reason) => return Ok(refused(sequence, reason)),
-        };
-        each_frame(sequence, progress, Workspace::default, |workspace, _, pictures| {
-            Ok(product.found(&product.estimate(sequence.input, pictures, workspace)?))
-        })
+        let found = |product: &Product, estimate| Ok(product.found(&estimate));
+        self.products.answers(sequence, self.fits, progress, found)
     }
 }
 
@@ -157,12 +167,6 @@ impl Method for RefinedFrames<'_> {
     }
 
     fn run(&self, sequence: &Sequence<'_>, progress: &dyn Progress) -> Result<Vec<Outcome>> {
-        let product = match self.products.of(sequence, self.fits, progress)? {
-            Ok(product) => product,
-            Err(reason) => return Ok(refused(sequence, reason)),
-        };
-        each_frame(sequence, progress, Workspace::default, |workspace, _, pictures| {
-            product.refine(product.estimate(sequence.input, pictures, workspace)?)
-        })
+        self.products.answers(sequence, self.fits, progress, Product::refine)
     }
 }
